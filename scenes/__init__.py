@@ -1,0 +1,77 @@
+"""Scenes: what there is, described and checked; nothing here traces a ray.
+
+A scene is a TOML file or a tree of frozen models. Models hold SI units (lengths in metres),
+wavelengths in nanometres (`…_nm`) and angles in degrees (`…_deg`); files may use millimetres.
+
+    >>> import scenes
+    >>> scene = scenes.load("prism")
+    >>> scene.objects[0].shape.apex_deg
+    60.0
+"""
+
+from scenes.camera import Camera
+from scenes.emission import Blackbody, Laser, Lines, SpectrumTable
+from scenes.emitters import Beam, Point, RectangleLamp, RoundProfile, SlitProfile, SphereLamp, Spot
+from scenes.errors import Problem, SceneError
+from scenes.files import gallery, gallery_path, load, loads, schema
+from scenes.film import Film
+from scenes.frames import rotation_matrix
+from scenes.materials import Absorber, Dielectric, Lambertian, ReflectanceTable
+from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMedium
+from scenes.objects import SceneObject
+from scenes.scene import RenderDefaults, Scene
+from scenes.shapes import (
+    Box,
+    Disk,
+    Lens,
+    LensSurface,
+    Plane,
+    Polyhedron,
+    Prism,
+    Rectangle,
+    Sphere,
+)
+
+__all__ = [
+    "Absorber",
+    "Beam",
+    "Blackbody",
+    "Box",
+    "Camera",
+    "CauchyMedium",
+    "ConstantMedium",
+    "Dielectric",
+    "Disk",
+    "Film",
+    "Lambertian",
+    "Laser",
+    "Lens",
+    "LensSurface",
+    "Lines",
+    "Plane",
+    "Point",
+    "Polyhedron",
+    "Prism",
+    "Problem",
+    "Rectangle",
+    "RectangleLamp",
+    "ReflectanceTable",
+    "RenderDefaults",
+    "RoundProfile",
+    "Scene",
+    "SceneError",
+    "SceneObject",
+    "SellmeierMedium",
+    "SlitProfile",
+    "SpectrumTable",
+    "Sphere",
+    "SphereLamp",
+    "Spot",
+    "TableMedium",
+    "gallery",
+    "gallery_path",
+    "load",
+    "loads",
+    "rotation_matrix",
+    "schema",
+]

@@ -1,0 +1,43 @@
+"""Lamps: light from a point, or from a surface that glows."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from scenes.emitters.emitter import Emitter
+from scenes.fields import Degrees, Direction, Position, Size
+from scenes.shapes import FlatRectangle
+
+__all__ = ["Point", "RectangleLamp", "SphereLamp", "Spot"]
+
+
+class Point(Emitter):
+    """A point that shines evenly in all directions."""
+
+    type: Literal["point"] = Field(default="point", description="point source")
+    position: Position = Field(description="where it is (length)")
+
+
+class Spot(Emitter):
+    """A point that shines evenly into a cone."""
+
+    type: Literal["spot"] = Field(default="spot", description="point source with a cone")
+    position: Position = Field(description="where it is (length)")
+    direction: Direction = Field(description="axis of the cone")
+    half_angle_deg: Degrees = Field(
+        gt=0, le=180, description="half angle of the cone, more than 0, at most 180 [degrees]"
+    )
+
+
+class SphereLamp(Emitter):
+    """A sphere that glows, equally bright from everywhere (Lambertian)."""
+
+    type: Literal["sphere"] = Field(default="sphere", description="glowing sphere")
+    position: Position = Field(description="centre (length)")
+    radius: Size = Field(description="radius (length)")
+
+
+class RectangleLamp(FlatRectangle, Emitter):
+    """A rectangle that glows (Lambertian) on the side its normal points to."""
+
+    type: Literal["rectangle"] = Field(default="rectangle", description="glowing rectangle")

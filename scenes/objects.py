@@ -1,0 +1,31 @@
+"""Objects: a shape made of a material."""
+
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from scenes.errors import Problem, refusal
+from scenes.materials import Dielectric, Material
+from scenes.model import SceneModel
+from scenes.shapes import Shape
+
+__all__ = ["SceneObject"]
+
+
+class SceneObject(SceneModel):
+    """A thing in the scene."""
+
+    name: str = Field(default="", description='name in messages, unique; "objects[i]" if not given')
+    shape: Shape = Field(description="where its surface is")
+    material: Material = Field(description="what its surface does to light")
+
+    @model_validator(mode="after")
+    def _medium_is_enclosed(self) -> Self:
+        if isinstance(self.material, Dielectric) and not self.shape.is_closed:
+            allowed = "lambertian or absorber, or a closed shape: sphere, box, prism, lens, …"
+            message = (
+                f"a {self.shape.type} encloses no volume that a dielectric could fill;"
+                f" allowed: {allowed}"
+            )
+            raise refusal(Problem("material.type", message, self.material.type, allowed))
+        return self

@@ -1,0 +1,131 @@
+"""The command ``nephroid``: reads its arguments, runs one command, turns errors into one line.
+
+Exit status: 0 when it worked, 2 for bad input or an output that cannot be written, 130 after
+Ctrl-C. Each command is a module of `sim.commands`, and those load nothing heavy before their
+arguments are known to be good: the help appears at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from sim.commands import glass, info, render, scenes, schema, trace
+from sim.version import VERSION
+
+__all__ = ["main", "parse_arguments", "run_from_shell"]
+
+_COMMANDS = {
+    "render": render,
+    "trace": trace,
+    "scenes": scenes,
+    "glass": glass,
+    "info": info,
+    "schema": schema,
+}
+
+_SUCCESS = 0
+_BAD_INPUT = 2
+_STOPPED = 130  # 128 + SIGINT, as shells have it.
+
+
+class _Parser(argparse.ArgumentParser):
+    """Reports a bad argument the way all other errors are reported: in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(_BAD_INPUT, f"nephroid: error: {message}; see '{self.prog} --help'\n")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Args:
+        arguments: What follows ``nephroid`` on the command line; None: this process's own.
+
+    Returns:
+        The exit status.
+    """
+    try:
+        parsed = parse_arguments(arguments)
+        parsed.run(parsed)
+        sys.stdout.flush()
+    except SystemExit as leaving:  # From argparse: --help, --version or a bad argument.
+        return leaving.code if isinstance(leaving.code, int) else _SUCCESS
+    except KeyboardInterrupt:
+        print("nephroid: stopped", file=sys.stderr)
+        return _STOPPED
+    except BrokenPipeError:
+        # Whoever read the output (`head`) has seen enough. Python flushes again at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except Exception as error:
+        message = _message(error)
+        if message is None:
+            raise
+        print(f"nephroid: error: {message}", file=sys.stderr)
+        return _BAD_INPUT
+    return _SUCCESS
+
+
+def run_from_shell() -> NoReturn:
+    """Entry point of the installed command: `main`, then out."""
+    status = main()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if status == _STOPPED:
+        # Worker threads are still in native code that cannot be interrupted, and a normal exit
+        # would wait for them. Nothing is lost: no file is open.
+        os._exit(status)
+    sys.exit(status)
+
+
+def parse_arguments(arguments: Sequence[str] | None = None) -> argparse.Namespace:
+    """Parse a command line; the result's ``run`` is the command, which takes the result.
+
+    Args:
+        arguments: What follows ``nephroid``; None: this process's own.
+
+    Returns:
+        The command's name as ``command``, its arguments, and ``run``.
+
+    Raises:
+        SystemExit: For a bad argument, after one line on stderr, and after ``--help``.
+    """
+    parser = _Parser(
+        prog="nephroid",
+        description="Photons through glass: spectral pictures of prisms, lenses and their light.",
+    )
+    parser.add_argument("--version", action="version", version=f"nephroid {VERSION}")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
+    for name, command in _COMMANDS.items():
+        subparser = commands.add_parser(
+            name, help=command.SUMMARY, description=command.__doc__, formatter_class=_HelpFormatter
+        )
+        command.add_arguments(subparser)
+        subparser.set_defaults(run=command.run)
+    return parser.parse_args(arguments)
+
+
+class _HelpFormatter(argparse.RawDescriptionHelpFormatter):
+    """Keeps the line breaks of the commands' docstrings."""
+
+
+def _message(error: Exception) -> str | None:
+    """What to tell about bad input or a lack of room; None for a bug, which shows its trace."""
+    from scenes import SceneError
+    from sim.errors import NephroidError
+    from spectra.errors import SpectraError
+
+    if isinstance(error, NephroidError | SceneError | SpectraError):
+        return str(error)
+    if isinstance(error, MemoryError):
+        return f"not enough memory: {error}" if str(error) else "not enough memory"
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{os.fsdecode(error.filename)}: {error.strerror}"
+    return None
+
+
+if __name__ == "__main__":
+    run_from_shell()

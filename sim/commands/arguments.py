@@ -1,0 +1,44 @@
+"""Arguments that several commands understand in the same way."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+__all__ = ["count", "exr_file", "figure_file", "png_file"]
+
+
+def count(text: str) -> int:
+    """A whole number, which may be written ``500000``, ``500_000`` or ``5e5``."""
+    try:
+        return int(text)
+    except ValueError:
+        number = float(text)
+    if not number.is_integer():
+        raise ValueError
+    return int(number)
+
+
+count.__name__ = "whole number"  # What argparse calls it: "invalid whole number value: 'many'".
+
+
+def exr_file(path: str) -> Path:
+    """An output file that must end in ``.exr``."""
+    return _file_with_suffix(path, ".exr")
+
+
+def png_file(path: str) -> Path:
+    """An output file that must end in ``.png``."""
+    return _file_with_suffix(path, ".png")
+
+
+def figure_file(path: str) -> Path:
+    """An output file that must end in ``.png`` or ``.svg``."""
+    return _file_with_suffix(path, ".png", ".svg")
+
+
+def _file_with_suffix(path: str, *suffixes: str) -> Path:
+    file = Path(path)
+    if file.suffix.lower() not in suffixes:
+        raise argparse.ArgumentTypeError(f"{path!r} does not end in {' or '.join(suffixes)}")
+    return file

@@ -1,0 +1,72 @@
+"""Tell what a spectral EXR holds: size, bands, how it was made, where the energy went."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sim.image.exr_reading import SpectralImage
+
+__all__ = ["SUMMARY", "add_arguments", "run"]
+
+SUMMARY = "what a spectral EXR holds"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("file", metavar="FILE.exr")
+    parser.add_argument("--scene", action="store_true",
+                        help="print only the scene it was rendered from, as TOML")
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Print what is in the file, or only its scene."""
+    from sim.errors import FileFormatError
+    from sim.image.exr_reading import read_exr
+
+    image = read_exr(arguments.file)
+    if not arguments.scene:
+        _print_pixels(image)
+        _print_origin(image)
+        return
+    scene = image.attribute("scene")
+    if scene is None:
+        raise FileFormatError(image.path, "it does not say which scene it was rendered from")
+    print(scene, end="" if scene.endswith("\n") else "\n")
+
+
+def _print_pixels(image: SpectralImage) -> None:
+    height, width, bands = image.spectral_radiance.shape
+    lowest_nm, highest_nm = image.wavelengths_nm[0], image.wavelengths_nm[-1]
+    print(image.path)
+    _print_row("size", f"{width} × {height} pixels")
+    _print_row("bands", f"{bands}, centred on {lowest_nm:g} to {highest_nm:g} nm")
+    _print_row("unit", image.attribute("bands") or image.attributes.get("emissiveUnits"))
+    _print_row("mean", f"{image.spectral_radiance.mean(dtype='float64'):.6g}")
+    _print_row("largest", f"{image.spectral_radiance.max():.6g}")
+    _print_row("standard error", "yes" if image.standard_error is not None else "no")
+    _print_row("linear RGB", "yes" if image.linear_rgb is not None else "no")
+    _print_row("exposure", image.attributes.get("EV"), "stops")
+    _print_row("other channels", ", ".join(image.other_channels) or None)
+
+
+def _print_origin(image: SpectralImage) -> None:
+    """How to render the file again, if it is one of Nephroid's."""
+    _print_row("Nephroid", image.attribute("version"))
+    _print_row("scene", image.attribute("scene_name"))
+    _print_row("observer", image.attribute("observer"))
+    for heading, unit in (("settings", ""), ("energy", "W")):
+        text = image.attribute(heading)
+        if text is not None:
+            print(f"  {heading}")
+            for name, value in json.loads(text).items():
+                _print_row(f"  {name}", value, unit)
+
+
+def _print_row(name: str, value: object, unit: str = "") -> None:
+    """One line, unless the file does not say."""
+    if value is not None and value != "":
+        shown = f"{value:.9g}" if isinstance(value, float) else value
+        print(f"  {name:<20}{shown} {unit}".rstrip())

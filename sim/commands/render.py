@@ -1,0 +1,128 @@
+"""Render a scene to a spectral EXR and a PNG.
+
+The EXR holds spectral radiance band by band, its standard error, linear RGB, and everything that
+reproduces it. Settings that are left out come from the scene's own [render] table, then from the
+program's defaults.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import functools
+import math
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sim.commands.arguments import count, exr_file, png_file
+
+if TYPE_CHECKING:
+    from scenes import Scene
+    from sim.image.picture import Picture
+    from sim.settings import RenderSettings
+
+__all__ = ["SUMMARY", "add_arguments", "run"]
+
+SUMMARY = "render a scene to a spectral EXR and a PNG"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
+    parser.add_argument("-o", "--output", type=exr_file, metavar="OUT.exr",
+                        help="spectral EXR (default: the scene's name, in this folder)")
+    parser.add_argument("--png", type=png_file, metavar="OUT.png",
+                        help="developed picture (default: beside the EXR)")
+    parser.add_argument("--photons", type=count, metavar="N", help="photons in each pass")
+    parser.add_argument("--passes", type=count, metavar="N",
+                        help="independent passes, averaged; two or more give a standard error")
+    parser.add_argument("--radius", type=float, metavar="M",
+                        help="gather radius of the first pass [m] (default: about one pixel)")
+    parser.add_argument("--precision", choices=("float32", "float64"),
+                        help="arithmetic of tracing (default: float64 on cpu, else float32)")
+    parser.add_argument("--seed", type=count, default=0, metavar="N",
+                        help="equal seeds give equal pictures (default: 0)")
+    parser.add_argument("--threads", type=count, metavar="N",
+                        help="CPU threads (default: all cores)")
+    parser.add_argument("--device", default="cpu", help="cpu (default), cuda:0, …")
+    parser.add_argument("--exposure", type=_stops, metavar="STOPS",
+                        help="exposure of the PNG (default: the scene's, else automatic)")
+    parser.add_argument("--verbose", action="store_true",
+                        help="print where the energy and the time went")
+
+
+def _stops(text: str) -> float:
+    stops = float(text)
+    if not math.isfinite(stops):
+        raise ValueError
+    return stops
+
+
+_stops.__name__ = "number of stops"
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Render, then write both files; outputs, settings and scene are checked before."""
+    from scenes import load
+    from sim.atomic_file import check_writable, write_whole
+    from sim.settings import RenderSettings
+
+    start = time.perf_counter()
+    names = {field.name for field in dataclasses.fields(RenderSettings)}
+    given = {name: value for name, value in vars(arguments).items() if name in names}
+    settings = RenderSettings(**given)
+    scene = load(arguments.scene)
+    exr_path = arguments.output or Path(f"{scene.source_name}.exr")
+    png_path = arguments.png or exr_path.with_suffix(".png")
+    check_writable(exr_path)
+    check_writable(png_path)
+    picture, exr, png = _rendered(scene, settings, arguments.exposure)
+    write_whole(exr_path, exr)
+    write_whole(png_path, png)
+    seconds = time.perf_counter() - start
+    height, width, bands = picture.spectral_radiance.shape
+    print(f"{exr_path} and {png_path}: {width} × {height}, {bands} bands, {seconds:.1f} s")
+    if arguments.verbose:
+        _print_books(picture)
+        _print_timings(picture.timings, seconds)
+
+
+def _rendered(
+    scene: Scene, settings: RenderSettings, exposure_stops: float | None
+) -> tuple[Picture, memoryview, memoryview]:
+    """The picture and the content of its two files, EXR and PNG."""
+    from sim.image.exr import encode_exr
+    from sim.image.png import encode_png
+    from sim.interruption import run_interruptibly
+    from sim.progress import ProgressCallback
+    from sim.progress_display import progress_display
+
+    def work(progress: ProgressCallback) -> tuple[Picture, memoryview, memoryview]:
+        from sim.render import render
+
+        picture = render(scene, settings, progress=progress)
+        exr = encode_exr(picture, exposure_stops=exposure_stops)
+        return picture, exr, encode_png(picture.develop(exposure_stops=exposure_stops))
+
+    with progress_display(sys.stderr) as progress:
+        return run_interruptibly(functools.partial(work, progress))
+
+
+def _print_books(picture: Picture) -> None:
+    """Where the emitted flux went, in watts and as a share."""
+    books = dataclasses.asdict(picture.energy)
+    print("energy")
+    for name, flux in books.items():
+        share = flux / picture.energy.emitted if picture.energy.emitted else math.nan
+        print(f"  {name:<14}{flux:14.9g} W {share:9.3%}")
+    print(f"  {'residual':<14}{picture.energy.residual:14.3g} of the emitted")
+
+
+def _print_timings(timings: dict[str, float], seconds: float) -> None:
+    """Where the time went; what no stage accounts for is loading and writing."""
+    print("time")
+    for stage, spent in timings.items():
+        print(f"  {stage:<14}{spent:10.2f} s")
+    print(f"  {'the rest':<14}{seconds - sum(timings.values()):10.2f} s")

@@ -1,0 +1,98 @@
+"""Draw the ray diagram of a scene: single rays from its lamps, coloured by wavelength.
+
+Rays follow refraction; where refraction cannot be, they follow total internal reflection.
+"""
+
+from __future__ import annotations
+
+import argparse
+import functools
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sim.commands.arguments import count, figure_file
+
+if TYPE_CHECKING:
+    from scenes import Scene
+    from sim.diagram.ray_lines import DrawnPath
+
+__all__ = ["SUMMARY", "add_arguments", "run"]
+
+SUMMARY = "draw the ray diagram of a scene"
+
+_DEFAULT_WAVELENGTHS = 5
+_ESCAPE = "escape"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
+    parser.add_argument("-o", "--output", type=figure_file, metavar="OUT.png|.svg",
+                        help="the diagram (default: SCENE-rays.png, in this folder)")
+    parser.add_argument("--rays", type=count, default=24, metavar="N",
+                        help="rays of each wavelength (default: 24)")
+    parser.add_argument("--wavelengths", type=_wavelengths, metavar="NM,NM,…",
+                        help="wavelengths [nm] (default: five over the film's range)")
+    parser.add_argument("--view", choices=("xy", "xz", "yz"),
+                        help="the plane seen (default: the one the rays spread in most)")
+    parser.add_argument("--seed", type=count, default=0, metavar="N",
+                        help="chooses the rays (default: 0)")
+
+
+def _wavelengths(text: str) -> list[float]:
+    return [float(part) for part in text.split(",")]
+
+
+_wavelengths.__name__ = "list of wavelengths"
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Trace the rays and draw them."""
+    from scenes import load
+    from sim.atomic_file import check_writable
+    from sim.diagram.draw import draw_rays
+    from sim.errors import SettingsError
+    from sim.figure_file import save_figure
+    from sim.interruption import run_interruptibly
+
+    if arguments.rays < 1:
+        raise SettingsError("rays", arguments.rays, "a whole number from 1")
+    scene = load(arguments.scene)
+    output = arguments.output or Path(f"{scene.source_name}-rays.png")
+    check_writable(output)
+    wavelengths_nm = arguments.wavelengths or _default_wavelengths_nm(scene)
+    work = functools.partial(_traced, scene, arguments.rays, wavelengths_nm, arguments.seed)
+    paths = run_interruptibly(work)
+    save_figure(draw_rays(scene, paths, view=arguments.view), output)
+    print(f"{output}: {len(paths)} rays")
+
+
+def _default_wavelengths_nm(scene: Scene) -> list[float]:
+    """Evenly spaced over the film's range, as far as the lamps emit in it."""
+    lowest_nm, highest_nm = map(float, scene.film.edges_nm[[0, -1]])
+    supports = [emitter.emission().support_nm for emitter in scene.emitters]
+    if supports:
+        lowest_nm = max(lowest_nm, min(low for low, _ in supports))
+        highest_nm = min(highest_nm, max(high for _, high in supports))
+    if lowest_nm >= highest_nm:
+        return [lowest_nm]
+    step_nm = (highest_nm - lowest_nm) / _DEFAULT_WAVELENGTHS
+    return [lowest_nm + (i + 0.5) * step_nm for i in range(_DEFAULT_WAVELENGTHS)]
+
+
+def _traced(
+    scene: Scene, rays: int, wavelengths_nm: Sequence[float], seed: int
+) -> list[DrawnPath]:
+    from sim.diagram.ray_lines import DrawnPath
+    from sim.photons.emission import representative_rays
+    from sim.single_ray import trace_ray
+
+    origins, directions = representative_rays(scene, rays, seed)
+    paths = []
+    for wavelength_nm in wavelengths_nm:
+        for origin, direction in zip(origins, directions, strict=True):
+            path = trace_ray(scene, origin, direction, wavelength_nm)
+            escapes = bool(path.events) and path.events[-1] == _ESCAPE
+            paths.append(DrawnPath(path.points, wavelength_nm, escapes))
+    return paths

@@ -1,0 +1,82 @@
+"""Paths as coloured line segments, merged where they cannot be told apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.diagram.view import View
+from spectra.srgb import wavelength_to_srgb
+
+__all__ = ["DrawnPath", "ray_lines"]
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnPath:
+    """One path to draw.
+
+    Attributes:
+        points: Its vertices in order, shape (n, 3) [m].
+        wavelength_nm: Its wavelength [nm].
+        escapes: Whether it leaves the scene, so that of its last segment only the direction is
+            of interest.
+    """
+
+    points: NDArray[np.float64]
+    wavelength_nm: float
+    escapes: bool = False
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """The points that are on something: all but the far end of a path that escapes."""
+        return self.points[:-1] if self.escapes else self.points
+
+
+def ray_lines(
+    paths: Sequence[DrawnPath], view: View, *, reach: float, resolution: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Segments to draw. Those that coincide become one, in the sum of their colours.
+
+    So white light is white until something parts its colours, and not the colour drawn last.
+
+    Args:
+        paths: The paths.
+        view: How they are seen.
+        reach: Length [m] of the last segment of a path that escapes.
+        resolution: Segments whose ends are closer than this [m] coincide.
+
+    Returns:
+        Segments (n, 2, 2) [m], and their encoded sRGB, (n, 3), 0 to 1.
+    """
+    from scipy.spatial import KDTree
+
+    polylines = [view.project(_with_long_end(path, reach)) for path in paths]
+    segments = [np.stack([line[:-1], line[1:]], axis=1) for line in polylines]
+    every = np.concatenate([*segments, np.empty((0, 2, 2))])
+    if len(every) == 0:
+        return every, np.empty((0, 3))
+    colours = wavelength_to_srgb(np.array([path.wavelength_nm for path in paths]))
+    colour_of = np.repeat(colours, [len(part) for part in segments], axis=0)
+    near = KDTree(every.reshape(-1, 4)).query_ball_point(every.reshape(-1, 4), resolution)
+    is_drawn = np.zeros(len(every), dtype=np.bool_)
+    kept, sums = [], []
+    for first, group in enumerate(near):
+        if not is_drawn[first]:
+            members = [index for index in group if not is_drawn[index]]
+            is_drawn[members] = True
+            kept.append(first)
+            sums.append(colour_of[members].sum(axis=0))
+    summed = np.array(sums)
+    return every[kept], summed / np.maximum(summed.max(axis=1, keepdims=True), 1.0)
+
+
+def _with_long_end(path: DrawnPath, reach: float) -> NDArray[np.float64]:
+    """The path's points; if it escapes, its last segment leads out of the picture."""
+    if not path.escapes or len(path.points) < 2:
+        return path.points
+    last = path.points[-1] - path.points[-2]
+    end = path.points[-2] + last / np.linalg.norm(last) * reach
+    return np.concatenate([path.points[:-1], end[None]])

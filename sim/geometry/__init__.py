@@ -1,0 +1,3 @@
+"""Device functions for where a ray meets a shape, one shape a file."""
+
+__all__: list[str] = []

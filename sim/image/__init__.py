@@ -1,0 +1,1 @@
+"""From photons to pictures: gathering, the film, and the files that hold it."""

@@ -1,0 +1,106 @@
+"""Rendered pictures as spectral EXR files; the layout is in `sim.image.exr_layout`."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.image.exr_layout import (
+    ATTRIBUTE_PREFIX,
+    BAND_MEANS,
+    EMISSIVE_UNITS,
+    LAYOUT_VERSION,
+    error_channel,
+    radiance_channel,
+)
+from sim.version import VERSION
+from spectra.units import LUMINOUS_EFFICACY_LM_W
+
+if TYPE_CHECKING:
+    from sim.image.picture import Picture
+
+__all__ = ["encode_exr"]
+
+# x and y of red, green, blue and white (IEC 61966-2-1, table 1), as OpenEXR's own attribute.
+_SRGB_CHROMATICITIES = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)
+
+
+def encode_exr(picture: Picture, *, exposure_stops: float | None = None) -> memoryview:
+    """Encode a picture as a spectral EXR.
+
+    Channels: spectral radiance and, when there is one, its standard error in each band, and
+    linear RGB with its negative values. White of luminance 683 cd/m² has RGB (1, 1, 1), which
+    OpenEXR's attribute ``whiteLuminance`` says; ``EV`` is the exposure to develop it with.
+
+    Args:
+        picture: What was rendered.
+        exposure_stops: Value of ``EV`` [stops]; None: the picture's own exposure.
+
+    Returns:
+        The content of the file.
+    """
+    import OpenEXR
+
+    stops = picture.exposure_stops if exposure_stops is None else exposure_stops
+    header = {
+        # Lossless, and known to every reader. On spectra with noise it takes 60 % of the time of
+        # ZIP, and 85 % of the room.
+        "compression": OpenEXR.PIZ_COMPRESSION,
+        "type": OpenEXR.scanlineimage,
+        "spectralLayoutVersion": LAYOUT_VERSION,
+        "emissiveUnits": EMISSIVE_UNITS,
+        "EV": float(stops),
+        "whiteLuminance": LUMINOUS_EFFICACY_LM_W,
+        "chromaticities": _SRGB_CHROMATICITIES,
+        **_reproducing_attributes(picture),
+    }
+    # Into memory: on a full disk the library raises nothing and leaves an empty file.
+    buffer = io.BytesIO()
+    with OpenEXR.File(header, _channels(picture)) as file:
+        file.write(buffer)
+    return buffer.getbuffer()
+
+
+def _channels(picture: Picture) -> dict[str, NDArray[np.float32]]:
+    channels = {name: _plane(picture.linear_rgb[..., i]) for i, name in enumerate("RGB")}
+    has_error = not np.isnan(picture.standard_error).all()
+    for band, wavelength_nm in enumerate(picture.wavelengths_nm.tolist()):
+        channels[radiance_channel(wavelength_nm)] = _plane(picture.spectral_radiance[..., band])
+        if has_error:
+            error = _plane(picture.standard_error[..., band])
+            channels[error_channel(wavelength_nm)] = _rounded_to_8_bits(error)
+    return channels
+
+
+def _plane(values: NDArray[np.float64]) -> NDArray[np.float32]:
+    """One channel, contiguous: OpenEXR writes wrong pixels from other arrays, silently."""
+    return np.ascontiguousarray(values, dtype=np.float32)
+
+
+def _rounded_to_8_bits(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Round the significand to 8 bits, within 0.4 %: plenty for an error bar, half the size."""
+    half_a_step, kept = np.uint32(0x8000), np.uint32(0xFFFF0000)
+    return ((values.view(np.uint32) + half_a_step) & kept).view(np.float32)
+
+
+def _reproducing_attributes(picture: Picture) -> dict[str, str]:
+    """What it takes to render the file again, and what the numbers in it mean."""
+    film = picture.scene.film
+    attributes = {
+        "version": VERSION,
+        "scene": picture.scene.source_text,
+        "scene_name": picture.scene.source_name,
+        "settings": json.dumps(picture.settings.reproducing()),
+        "seed": str(picture.settings.seed),  # As text: OpenEXR's integers have 32 bits.
+        "energy": json.dumps(dataclasses.asdict(picture.energy)),
+        "bands": BAND_MEANS,
+        "band_edges_nm": json.dumps(picture.edges_nm.tolist()),
+        "observer": film.observer,
+        "gamut": film.gamut,
+    }
+    return {ATTRIBUTE_PREFIX + name: text for name, text in attributes.items()}

@@ -1,0 +1,114 @@
+"""The film: radiance of each pixel and band, averaged over passes, with its spread."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import warp as wp
+
+from sim.image.camera_path import make_film_struct, make_render_camera
+from sim.launch import cut_ranges, launch_ranges
+from sim.photons.photon_map import PhotonMap, bands_struct
+from sim.sampling.counter import fold_key
+from sim.scene_data import CompiledScene
+
+__all__ = ["Film", "create_film", "expose"]
+
+FloatArray = npt.NDArray[np.float64]
+
+_RANGE_SIZE = 1024
+"""Pixels a launch: behind glass each costs a path a band."""
+
+_CAMERA_KEY = 0xCA3E2A
+"""Tells the camera's random numbers from the photons' of the same seed and pass."""
+
+
+@dataclass
+class Film:
+    """Running mean and squared deviations over passes, on the device.
+
+    Attributes:
+        height, width: pixels.
+        edges_nm: (bands + 1,) band edges [nm].
+        data: the device-side Film struct.
+        passes: passes exposed so far.
+    """
+
+    height: int
+    width: int
+    edges_nm: FloatArray
+    data: Any
+    passes: int = 0
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """(height, width, bands)."""
+        return self.height, self.width, len(self.edges_nm) - 1
+
+    def radiance(self) -> FloatArray:
+        """Mean over passes, (height, width, bands) [W m⁻² sr⁻¹ nm⁻¹]."""
+        mean: FloatArray = self.data.mean.numpy().reshape(self.shape)
+        return mean
+
+    def standard_error(self) -> FloatArray:
+        """One σ of the mean, same shape and unit; NaN from a single pass.
+
+        The passes are independent estimates: σ² = Σ(x − x̄)² / (n (n − 1)).
+        """
+        if self.passes < 2:
+            return np.full(self.shape, np.nan)
+        squares = self.data.squares.numpy().reshape(self.shape)
+        error: FloatArray = np.sqrt(squares / (self.passes * (self.passes - 1.0)))
+        return error
+
+
+def create_film(height: int, width: int, edges_nm: FloatArray, device: str) -> Film:
+    """An unexposed film."""
+    data = make_film_struct()()
+    size = (height * width, len(edges_nm) - 1)
+    data.sample = wp.zeros(size, dtype=wp.float64, device=device)
+    data.mean = wp.zeros(size, dtype=wp.float64, device=device)
+    data.squares = wp.zeros(size, dtype=wp.float64, device=device)
+    return Film(height, width, np.asarray(edges_nm, dtype=np.float64), data)
+
+
+def expose(
+    film: Film,
+    compiled: CompiledScene,
+    camera: Any,
+    photon_map: PhotonMap,
+    *,
+    seed: int,
+    pass_index: int,
+    threads: int,
+    on_done: Callable[[int], None] | None = None,
+) -> None:
+    """Expose `film` to one pass: a camera path a pixel, gathering from `photon_map`.
+
+    Args:
+        film: what the pass is averaged into.
+        compiled: the scene.
+        camera: the device-side Camera struct.
+        photon_map: this pass's photons.
+        seed: the run's seed.
+        pass_index: decides the position within the pixels and the bands.
+        threads: CPU threads.
+        on_done: told of finished pixels.
+    """
+    data = film.data
+    data.pass_index = pass_index
+    data.passes_before = film.passes
+    data.key = fold_key(seed, _CAMERA_KEY)
+    bands = bands_struct(compiled.precision, film.edges_nm)
+    inputs = [compiled.data, camera, photon_map.data, bands, data]
+    launch_ranges(
+        make_render_camera(compiled.precision, compiled.features),
+        cut_ranges(film.height * film.width, _RANGE_SIZE),
+        lambda _: inputs,
+        device=compiled.device,
+        threads=threads,
+        on_done=on_done,
+    )
+    film.passes += 1

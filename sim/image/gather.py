@@ -1,0 +1,143 @@
+"""Radiance from the photon map at a point of a diffuse receiver.
+
+The reflected radiance of a band is ``L = Σ K(|x − xₚ|) ρ Φₚ / (π Δλ)`` over the photons on the
+same side of the same face within the radius, with the kernel of Epanechnikov (1969),
+``K(d) = 2/(π r²) (1 − d²/r²)``. Where the disc overhangs the receiver's edge, K is divided by its
+integral over the part that does not.
+
+References:
+    Jensen (1996), "Global illumination using photon maps", §3.2.
+    Silverman (1986), *Density Estimation*, §2.10 on boundaries, §3.3 on the kernel.
+"""
+
+import functools
+import math
+
+import warp as wp
+
+from sim.features import Features
+from sim.geometry.extent import distance_to_circle, distance_to_planes, distance_to_sides
+from sim.geometry.flat import plane_coordinates
+from sim.photons.photon_map import make_map_structs
+from sim.precision import precision_types
+from sim.sampling.directions import to_world
+from sim.scene_structs import SHAPE_FLAT, SHAPE_POLYHEDRON, make_scene_structs
+
+__all__ = ["make_gather"]
+
+EDGE_DIRECTIONS = 64
+"""Directions in which the overhang is measured: about 1e-4 of the kernel's integral."""
+
+PI = wp.constant(3.141592653589793)
+
+
+@functools.cache
+def make_kernel_integral(precision: str, features: Features) -> object:
+    """Device function: the part of the gather kernel that lies on the receiver, in (0, 1]."""
+    structs = make_scene_structs(precision)
+    real, vec3, scene_type = structs.real, structs.vec3, structs.Scene
+    interaction_type = structs.Interaction
+
+    @wp.func
+    def clearance(scene: scene_type, met: interaction_type, radius: real):
+        """A lower bound of the distance to the receiver's edge; `radius` where it has none."""
+        body = scene.bodies[met.prim]
+        distance = radius
+        if wp.static(features.flats):
+            if body.shape == SHAPE_FLAT:
+                flat = scene.flats[body.row]
+                u, v = plane_coordinates(met.point - flat.centre, flat.frame)
+                distance = wp.min(flat.half_u - wp.abs(u), flat.half_v - wp.abs(v))
+                if flat.radius2 < real(wp.inf):
+                    distance = wp.sqrt(flat.radius2) - wp.sqrt(u * u + v * v)
+        if wp.static(features.polyhedra):
+            if body.shape == SHAPE_POLYHEDRON:
+                solid = scene.polyhedra[body.row]
+                point = met.point - solid.centre
+                for other in range(solid.first, solid.first + solid.count):
+                    if other != met.face:
+                        plane = scene.planes[other]
+                        distance = wp.min(distance, plane.offset - wp.dot(plane.normal, point))
+        return distance
+
+    @wp.func
+    def reach(scene: scene_type, met: interaction_type, cos_phi: real, sin_phi: real):
+        """Distance to the receiver's edge in a tangent direction, infinite where it has none."""
+        body = scene.bodies[met.prim]
+        distance = real(wp.inf)
+        if wp.static(features.flats):
+            if body.shape == SHAPE_FLAT:
+                flat = scene.flats[body.row]
+                u, v = plane_coordinates(met.point - flat.centre, flat.frame)
+                distance = distance_to_sides(u, v, flat.half_u, flat.half_v, cos_phi, sin_phi)
+                if flat.radius2 < real(wp.inf):
+                    distance = distance_to_circle(u, v, flat.radius2, cos_phi, sin_phi)
+        if wp.static(features.polyhedra):
+            if body.shape == SHAPE_POLYHEDRON:
+                solid = scene.polyhedra[body.row]
+                distance = distance_to_planes(
+                    met.point - solid.centre,
+                    to_world(cos_phi, sin_phi, real(0.0), met.normal),
+                    scene.planes, solid.first, solid.count, met.face,
+                )
+        return distance
+
+    @wp.func
+    def kernel_integral(scene: scene_type, met: interaction_type, radius: real):
+        if clearance(scene, met, radius) >= radius:
+            return real(1.0)
+        # ∫K dA in polar form: ∮ G(ρ(φ)) dφ with G(ρ) = (x − x²/2)/π, x = ρ²/r².
+        total = real(0.0)
+        step = real(wp.static(2.0 * math.pi / EDGE_DIRECTIONS))
+        for k in range(wp.static(EDGE_DIRECTIONS)):
+            phi = step * (real(k) + real(0.5))
+            rho = wp.min(reach(scene, met, wp.cos(phi), wp.sin(phi)), radius)
+            x = rho * rho / (radius * radius)
+            total += (x - real(0.5) * x * x) / real(PI) * step
+        return wp.max(total, real(1e-3))
+
+    return kernel_integral
+
+
+@functools.cache
+def make_gather(precision: str, features: Features) -> object:
+    """Device function `gather(scene, map, met, surface, band, scale, out, row)`.
+
+    It adds ``scale · Σ K w`` of each photon to `out[row, its band]`; `band` −1 means all bands.
+    """
+    real = precision_types(precision).real
+    structs = make_scene_structs(precision)
+    scene_type, interaction_type = structs.Scene, structs.Interaction
+    map_type = make_map_structs(precision).Map
+    kernel_integral = make_kernel_integral(precision, features)
+
+    @wp.func
+    def gather(
+        scene: scene_type,
+        photons: map_type,
+        met: interaction_type,
+        surface: int,
+        band: int,
+        scale: real,
+        out: wp.array2d(dtype=wp.float64),
+        row: int,
+    ):
+        radius = photons.radius
+        query = wp.hash_grid_query(photons.grid, met.point, radius)
+        if band >= 0:
+            query = wp.hash_grid_query(photons.grid, met.point, radius, band)
+        inv_radius2 = real(1.0) / (radius * radius)
+        peak = scale * real(2.0) / real(PI) * inv_radius2
+        found = int(0)
+        candidate = int(0)
+        while wp.hash_grid_query_next(query, candidate):
+            offset = photons.position[candidate] - met.point
+            x = wp.dot(offset, offset) * inv_radius2
+            if x < real(1.0) and photons.surface[candidate] == surface:
+                if found == 0:
+                    found = 1
+                    peak /= kernel_integral(scene, met, radius)
+                value = peak * (real(1.0) - x) * photons.weight[candidate]
+                out[row, photons.band[candidate]] += wp.float64(value)
+
+    return gather

@@ -1,0 +1,110 @@
+"""Run a kernel over ranges of indices, on every core of the CPU or on the GPU.
+
+A Warp launch on the CPU is one serial loop, but it releases Python's lock, so a thread pool of
+launches over disjoint ranges runs on all cores. Ranges are cut by size alone, never by the number
+of threads, and each range owns its outputs: results are bitwise equal for any thread count.
+
+CPU atomics are plain additions: no two ranges may add to the same element.
+"""
+
+import queue
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import warp as wp
+
+__all__ = ["Range", "cut_ranges", "launch_ranges"]
+
+Range = tuple[int, int]
+"""(start, count) of the indices that one launch covers."""
+
+_POLL_S = 0.1
+"""How often the waiting thread looks up, so that Ctrl-C is heard."""
+
+
+def cut_ranges(total: int, size: int) -> list[Range]:
+    """Cut `total` indices into ranges of `size` (the last one shorter)."""
+    return [(start, min(size, total - start)) for start in range(0, total, size)]
+
+
+def launch_ranges(
+    kernel: Any,
+    ranges: Sequence[Range],
+    inputs_of: Callable[[int], list[Any]],
+    *,
+    device: str,
+    threads: int,
+    on_done: Callable[[int], None] | None = None,
+) -> None:
+    """Launch `kernel` once a range, `count` threads each, and wait for all.
+
+    Args:
+        kernel: its first parameter is the range's start (int); the rest come from `inputs_of`.
+        ranges: disjoint index ranges.
+        inputs_of: maps a range's number to the kernel's remaining arguments.
+        device: "cpu" or a CUDA device.
+        threads: CPU threads; a GPU is fed from one thread.
+        on_done: told the number of finished indices after each range, from the calling thread.
+
+    Raises:
+        KeyboardInterrupt: within one range's time of Ctrl-C, all workers having stopped.
+    """
+    kernel.module.load(wp.get_device(device))  # must not happen in two threads at once
+    # Arguments are packed here, in one thread: only the native call is safe in several.
+    commands = [
+        wp.launch(
+            kernel, dim=count, inputs=[start, *inputs_of(number)], device=device, record_cmd=True
+        )
+        for number, (start, count) in enumerate(ranges)
+    ]
+    pending: queue.SimpleQueue[int] = queue.SimpleQueue()
+    for number in range(len(ranges)):
+        pending.put(number)
+    finished: queue.SimpleQueue[int | BaseException] = queue.SimpleQueue()
+    stop = threading.Event()
+
+    def work() -> None:
+        while not stop.is_set():
+            try:
+                number = pending.get_nowait()
+            except queue.Empty:
+                return
+            try:
+                commands[number].launch()
+            except BaseException as error:
+                finished.put(error)
+                return
+            finished.put(number)
+
+    workers = 1 if device != "cpu" else min(threads, max(1, len(ranges)))
+    crew = [threading.Thread(target=work, daemon=True) for _ in range(workers)]
+    for thread in crew:
+        thread.start()
+    try:
+        _collect(ranges, finished, on_done)
+        if device != "cpu":
+            wp.synchronize_device(device)
+    finally:
+        stop.set()
+        for thread in crew:
+            thread.join()
+
+
+def _collect(
+    ranges: Sequence[Range],
+    finished: "queue.SimpleQueue[int | BaseException]",
+    on_done: Callable[[int], None] | None,
+) -> None:
+    """Wait for every range; hand on the first error; tell `on_done` of progress."""
+    for _ in ranges:
+        while True:
+            try:
+                item = finished.get(timeout=_POLL_S)
+            except queue.Empty:
+                continue
+            break
+        if isinstance(item, BaseException):
+            raise item
+        if on_done is not None:
+            on_done(ranges[item][1])

@@ -1,0 +1,3 @@
+"""Device functions for what a surface does to light."""
+
+__all__: list[str] = []

@@ -1,0 +1,265 @@
+"""Photons leave their lamps: position, direction, wavelength and flux, device side.
+
+A lamp sends photons by several *targets* at once: as it radiates by nature, into the cone around
+each specular object, onto each receiver. Target j gets n_j photons with density p_j; a photon
+in direction ω carries the lamp's flux times ``f(ω) / Σ_j n_j p_j(ω)``, where f is the lamp's own
+density. Overlapping targets are thereby counted once, wherever a photon came from, and its flux
+is bounded by that of unaimed emission.
+
+References:
+    Veach & Guibas (1995), "Optimally combining sampling techniques", SIGGRAPH, §3.3 eq. (12):
+    the balance heuristic over several techniques.
+    Press et al. (2007), *Numerical Recipes*, §7.3.2: inversion of a distribution function.
+"""
+
+import functools
+from types import SimpleNamespace
+
+import warp as wp
+
+from sim.photons.lamp_structs import (
+    AIM_AREA,
+    AIM_CONE,
+    BEAM,
+    RECTANGLE_LAMP,
+    SPHERE_LAMP,
+    SPOT,
+    make_lamp_structs,
+)
+from sim.sampling.counter import hash64
+from sim.sampling.directions import (
+    cone_solid_angle,
+    sample_cone,
+    sample_cosine_hemisphere,
+    sample_disk,
+    sample_sphere,
+    to_world,
+)
+from sim.sampling.sobol import make_sobol_uniform
+from sim.scene_structs import make_ray_structs
+
+__all__ = ["make_emission"]
+
+INV_PI = wp.constant(0.3183098861837907)
+INV_4PI = wp.constant(0.07957747154594767)
+
+
+@functools.cache
+def make_density_functions(precision: str) -> SimpleNamespace:
+    """Device functions of solid-angle densities: `own_density`, `target_density` [1/sr]."""
+    structs = make_lamp_structs(precision)
+    real, vec3 = structs.real, structs.vec3
+    emitter_type, target_type = structs.Emitter, structs.Target
+
+    @wp.func
+    def own_density(emitter: emitter_type, direction: vec3):
+        """Density of the lamp's own radiation over directions."""
+        axis = emitter.frame[2]
+        if emitter.kind == RECTANGLE_LAMP:
+            return wp.max(wp.dot(direction, axis), real(0.0)) * real(INV_PI)
+        if emitter.kind == SPOT:
+            chord = direction - axis
+            # |d − a|² = 4 sin²(θ/2): exact where the cone is narrow.
+            if wp.dot(chord, chord) <= real(4.0) * emitter.sin2_half:
+                return real(1.0) / cone_solid_angle(emitter.sin2_half)
+            return real(0.0)
+        return real(INV_4PI)
+
+    @wp.func
+    def cone_of(target: target_type, origin: vec3):
+        """sin² of half the angle of the cone around a target's sphere; 1 from inside it."""
+        offset = target.centre - origin
+        distance2 = wp.dot(offset, offset)
+        sin2 = target.radius * target.radius / distance2
+        if sin2 >= real(1.0):
+            return real(1.0)
+        return sin2 / (real(2.0) * (real(1.0) + wp.sqrt(real(1.0) - sin2)))
+
+    @wp.func
+    def target_density(
+        emitter: emitter_type, target: target_type, origin: vec3, direction: vec3, drawn: bool
+    ):
+        """Density with which `target` draws `direction` from `origin`.
+
+        A direction that this very target has `drawn` is inside it, whatever rounding says.
+        """
+        if target.kind == AIM_CONE:
+            sin2_half = cone_of(target, origin)
+            if sin2_half < real(1.0):
+                chord = direction - wp.normalize(target.centre - origin)
+                if not drawn and wp.dot(chord, chord) > real(4.0) * sin2_half:
+                    return real(0.0)
+            return real(1.0) / cone_solid_angle(sin2_half)
+        if target.kind == AIM_AREA:
+            offset = target.centre - origin
+            normal = target.frame[2]
+            approach = wp.dot(direction, normal)
+            if approach == real(0.0):
+                return real(0.0)
+            t = wp.dot(offset, normal) / approach
+            if t <= real(0.0):
+                return real(0.0)
+            local = target.frame * (direction * t - offset)
+            outside = wp.abs(local[0]) > target.half_u or wp.abs(local[1]) > target.half_v
+            if outside and not drawn:
+                return real(0.0)
+            return t * t / (real(4.0) * target.half_u * target.half_v * wp.abs(approach))
+        return own_density(emitter, direction)
+
+    return SimpleNamespace(
+        own_density=own_density, target_density=target_density, cone_of=cone_of
+    )
+
+
+@functools.cache
+def make_wavelength_function(precision: str) -> object:
+    """Device function `sample_wavelength(lamps, emitter, u)` [nm], density as the spectrum."""
+    structs = make_lamp_structs(precision)
+    real, lamps_type, emitter_type = structs.real, structs.Lamps, structs.Emitter
+
+    @wp.func
+    def sample_wavelength(lamps: lamps_type, emitter: emitter_type, u: real):
+        low = emitter.first_segment
+        high = emitter.first_segment + emitter.segment_count
+        while high - low > 1:
+            middle = (low + high) // 2
+            if lamps.segments[middle].cdf_low <= u:
+                low = middle
+            else:
+                high = middle
+        segment = lamps.segments[low]
+        if segment.width_nm == real(0.0):
+            return segment.wavelength_nm
+        v = (u - segment.cdf_low) / (segment.cdf_high - segment.cdf_low)
+        v = wp.clamp(v, real(0.0), real(1.0))
+        d0 = segment.density_low
+        d1 = segment.density_high
+        # Root of d0 x + (d1 − d0) x²/2 = v (d0 + d1)/2 that survives d0 = d1.
+        root = wp.sqrt(wp.max(d0 * d0 + v * (d1 - d0) * (d1 + d0), real(0.0)))
+        return segment.wavelength_nm + segment.width_nm * v * (d0 + d1) / (d0 + root)
+
+    return sample_wavelength
+
+
+@functools.cache
+def make_direction_function(precision: str) -> object:
+    """Device function `sample_direction(emitter, target, origin, u0, u1)`, unit."""
+    structs = make_lamp_structs(precision)
+    real, vec3 = structs.real, structs.vec3
+    emitter_type, target_type = structs.Emitter, structs.Target
+    cone_of = make_density_functions(precision).cone_of
+
+    @wp.func
+    def sample_direction(
+        emitter: emitter_type, target: target_type, origin: vec3, u0: real, u1: real
+    ):
+        axis = emitter.frame[2]
+        if target.kind == AIM_CONE:
+            sin2_half = cone_of(target, origin)
+            x, y, z = sample_cone(u0, u1, sin2_half)
+            if sin2_half >= real(1.0):
+                return vec3(x, y, z)
+            return to_world(x, y, z, wp.normalize(target.centre - origin))
+        if target.kind == AIM_AREA:
+            s = (u0 + u0 - real(1.0)) * target.half_u
+            t = (u1 + u1 - real(1.0)) * target.half_v
+            return wp.normalize(
+                target.centre + target.frame[0] * s + target.frame[1] * t - origin
+            )
+        if emitter.kind == RECTANGLE_LAMP:
+            x, y, z = sample_cosine_hemisphere(u0, u1)
+            return to_world(x, y, z, axis)
+        if emitter.kind == SPOT or emitter.kind == BEAM:
+            x, y, z = sample_cone(u0, u1, emitter.sin2_half)
+            return to_world(x, y, z, axis)
+        x, y, z = sample_sphere(u0, u1)
+        return vec3(x, y, z)
+
+    return sample_direction
+
+
+@functools.cache
+def make_emission(precision: str) -> object:
+    """Device function `emit(lamps, emitter, target, seed_row, index, key)`.
+
+    Returns:
+        The function, which returns (Ray, wavelength [nm], flux [W]) of photon `index` of the
+        sequence that belongs to one emitter and one of its targets.
+    """
+    structs = make_lamp_structs(precision)
+    real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
+    ray_type = make_ray_structs(precision).Ray
+    densities = make_density_functions(precision)
+    own_density, target_density = densities.own_density, densities.target_density
+    sample_wavelength = make_wavelength_function(precision)
+    sample_direction = make_direction_function(precision)
+    sobol_uniform = make_sobol_uniform(precision)
+
+    @wp.func
+    def emit(
+        lamps: lamps_type,
+        emitter_row: int,
+        target_row: int,
+        seed_row: int,
+        index: wp.uint32,
+        key: wp.uint64,
+    ):
+        emitter = lamps.emitters[emitter_row]
+        target = lamps.targets[target_row]
+        low = hash64(key, wp.uint64(index) * wp.uint64(2))
+        low2 = hash64(key, wp.uint64(index) * wp.uint64(2) + wp.uint64(1))
+        bits0 = wp.uint32(low)
+        bits1 = wp.uint32(low >> wp.uint64(21))
+        bits2 = wp.uint32(low >> wp.uint64(42))
+        bits3 = wp.uint32(low2)
+        bits4 = wp.uint32(low2 >> wp.uint64(21))
+        u0 = sobol_uniform(lamps.sobol, index, 0, lamps.seeds[seed_row], bits0)
+        u1 = sobol_uniform(lamps.sobol, index, 1, lamps.seeds[seed_row + 1], bits1)
+        u2 = sobol_uniform(lamps.sobol, index, 2, lamps.seeds[seed_row + 2], bits2)
+        u3 = sobol_uniform(lamps.sobol, index, 3, lamps.seeds[seed_row + 3], bits3)
+        u4 = sobol_uniform(lamps.sobol, index, 4, lamps.seeds[seed_row + 4], bits4)
+
+        ray = ray_type()
+        ray.prim = -1
+        ray.face = -1
+        origin = emitter.centre
+        wavelength_nm = sample_wavelength(lamps, emitter, u2)
+        if emitter.kind == BEAM:
+            # A beam aims itself: its profile gets the best two dimensions.
+            if emitter.round == 1:
+                x, y = sample_disk(u0, u1)
+            else:
+                x = u0 + u0 - real(1.0)
+                y = u1 + u1 - real(1.0)
+            origin += emitter.frame[0] * (x * emitter.half_u)
+            origin += emitter.frame[1] * (y * emitter.half_v)
+            ray.origin = origin
+            ray.direction = sample_direction(emitter, target, origin, u3, u4)
+            return ray, wavelength_nm, emitter.flux / target.photons
+
+        if emitter.kind == RECTANGLE_LAMP:
+            origin += emitter.frame[0] * ((u3 + u3 - real(1.0)) * emitter.half_u)
+            origin += emitter.frame[1] * ((u4 + u4 - real(1.0)) * emitter.half_v)
+        direction = sample_direction(emitter, target, origin, u0, u1)
+        density = real(0.0)
+        first = emitter.first_target
+        for other in range(first, first + emitter.target_count):
+            chosen = lamps.targets[other]
+            density += chosen.photons * target_density(
+                emitter, chosen, origin, direction, other == target_row
+            )
+        flux = real(0.0)
+        own = own_density(emitter, direction)
+        if own > real(0.0):
+            flux = emitter.flux * own / density
+        if emitter.kind == SPHERE_LAMP:
+            # A Lambertian sphere seen from afar is a uniform disk: dA cosθ = dA⊥.
+            x, y = sample_disk(u3, u4)
+            depth = wp.sqrt(wp.max(real(1.0) - x * x - y * y, real(0.0)))
+            offset = to_world(x, y, depth, direction)
+            origin += offset * emitter.radius
+        ray.origin = origin
+        ray.direction = direction
+        return ray, wavelength_nm, flux
+
+    return emit

@@ -1,0 +1,99 @@
+"""The device-side layout of the lamps: emitters, what they aim at, and their spectra."""
+
+import functools
+from types import SimpleNamespace
+
+import warp as wp
+
+from sim.precision import precision_types
+
+__all__ = [
+    "AIM_AREA",
+    "AIM_BASE",
+    "AIM_CONE",
+    "BEAM",
+    "POINT",
+    "RECTANGLE_LAMP",
+    "SPHERE_LAMP",
+    "SPOT",
+    "make_lamp_structs",
+]
+
+BEAM = wp.constant(0)
+POINT = wp.constant(1)
+SPOT = wp.constant(2)
+SPHERE_LAMP = wp.constant(3)
+RECTANGLE_LAMP = wp.constant(4)
+
+AIM_BASE = wp.constant(0)
+"""Directions as the lamp itself distributes them."""
+AIM_CONE = wp.constant(1)
+"""Directions into the cone around a bounding sphere."""
+AIM_AREA = wp.constant(2)
+"""Directions to points uniform on a rectangle."""
+
+
+@functools.cache
+def make_lamp_structs(precision: str) -> SimpleNamespace:
+    """Structs Emitter, Target, Segment (of a spectrum) and Lamps, with the scalar types."""
+    types = precision_types(precision)
+    real, vec3, mat33 = types.real, types.vec3, types.mat33
+
+    @wp.struct
+    class Emitter:
+        kind: int
+        round: int
+        centre: vec3
+        frame: mat33  # rows: u, v, axis
+        half_u: real
+        half_v: real
+        radius: real
+        sin2_half: real  # sin² of half the cone's half angle
+        flux: real
+        first_target: int
+        target_count: int
+        first_segment: int
+        segment_count: int
+
+    @wp.struct
+    class Target:
+        """Where photons are aimed, and how many: the first target of an emitter is its base."""
+
+        kind: int
+        centre: vec3
+        frame: mat33
+        half_u: real
+        half_v: real
+        radius: real
+        photons: real
+
+    @wp.struct
+    class Segment:
+        """A piece of a spectrum: density linear from `density_low` to `density_high` over `width`.
+
+        A spectral line has no width. `cdf_low` and `cdf_high` bound its share of the flux.
+        """
+
+        wavelength_nm: real
+        width_nm: real
+        density_low: real
+        density_high: real
+        cdf_low: real
+        cdf_high: real
+
+    @wp.struct
+    class Lamps:
+        emitters: wp.array(dtype=Emitter)
+        targets: wp.array(dtype=Target)
+        segments: wp.array(dtype=Segment)
+        sobol: wp.array(dtype=wp.uint32)
+        seeds: wp.array(dtype=wp.uint32)
+
+    return SimpleNamespace(
+        real=real,
+        vec3=vec3,
+        Emitter=Emitter,
+        Target=Target,
+        Segment=Segment,
+        Lamps=Lamps,
+    )

@@ -1,0 +1,203 @@
+"""The scene's emitters as device arrays, and how many photons each sends where."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import warp as wp
+
+import scenes
+from sim.photons.lamp_structs import (
+    AIM_AREA,
+    AIM_BASE,
+    AIM_CONE,
+    BEAM,
+    POINT,
+    RECTANGLE_LAMP,
+    SPHERE_LAMP,
+    SPOT,
+    make_lamp_structs,
+)
+from sim.precision import precision_types
+from sim.sampling.counter import seed_words
+from sim.sampling.sobol import DIMENSIONS, sobol_tables
+from sim.scene_data import CompiledScene, axis_frame, struct_array
+from spectra import EmissionSpectrum
+
+__all__ = ["Lamps", "Stream", "compile_lamps"]
+
+FloatArray = npt.NDArray[np.float64]
+
+SPECULAR_SHARE = 0.5
+RECEIVER_SHARE = 0.35
+"""Shares of a lamp's photons aimed at specular objects and at receivers; the rest go as the lamp
+radiates. They divide effort, not light: any positive shares give the same expected picture."""
+
+
+@dataclass(frozen=True)
+class Stream:
+    """Photons of one emitter at one target: one low-discrepancy sequence of `photons` points."""
+
+    emitter: int
+    target: int
+    photons: int
+
+
+@dataclass(frozen=True)
+class Lamps:
+    """Emitters on the device, and the streams that a pass draws from them.
+
+    Attributes:
+        data: the device-side Lamps struct.
+        streams: what one pass emits; their photon counts add up to the pass's photons.
+        flux: radiant flux inside the film's wavelengths, all lamps together [W].
+    """
+
+    data: Any
+    streams: tuple[Stream, ...]
+    flux: float
+
+    def seed(self, device: str, seed: int, pass_index: int) -> None:
+        """Give every stream its own scramble for this pass."""
+        words = seed_words(len(self.streams) * DIMENSIONS, seed, pass_index)
+        self.data.seeds = wp.array(words, dtype=wp.uint32, device=device)
+
+
+def compile_lamps(
+    compiled: CompiledScene, edges_nm: FloatArray, photons: int
+) -> Lamps:
+    """Lay the emitters out and share `photons` among them and their targets.
+
+    Args:
+        compiled: the scene.
+        edges_nm: band edges of the film; light outside of them is not emitted.
+        photons: photons of one pass.
+    """
+    scene, structs = compiled.scene, make_lamp_structs(compiled.precision)
+    emitters: list[tuple[Any, ...]] = []
+    targets: list[tuple[Any, ...]] = []
+    segments: list[tuple[Any, ...]] = []
+    streams: list[Stream] = []
+    spectra = [_film_part(emitter, edges_nm) for emitter in scene.emitters]
+    counts = _share(photons, [0.5 / len(spectra) + 0.5 * f for f in _fractions(spectra)])
+    for row, (emitter, (spectrum, flux)) in enumerate(zip(scene.emitters, spectra, strict=True)):
+        if spectrum is None or counts[row] == 0:
+            continue
+        aims = _find_targets(compiled, emitter)
+        pieces = _segments(spectrum)
+        shares = _share(counts[row], [share for share, _ in aims])
+        first = len(targets)
+        for (_, aim), count in zip(aims, shares, strict=True):
+            streams.append(Stream(len(emitters), len(targets), count))
+            targets.append((*aim, float(count)))
+        emitters.append(
+            (*_emitter_row(compiled, emitter), flux, first, len(aims), len(segments), len(pieces))
+        )
+        segments.extend(pieces)
+    data = structs.Lamps()
+    data.emitters = struct_array(structs.Emitter, emitters, compiled.device)
+    data.targets = struct_array(structs.Target, targets, compiled.device)
+    data.segments = struct_array(structs.Segment, segments, compiled.device)
+    data.sobol = wp.array(sobol_tables(), dtype=wp.uint32, device=compiled.device)
+    return Lamps(data, tuple(streams), float(sum(flux for _, flux in spectra)))
+
+
+def _film_part(
+    emitter: Any, edges_nm: FloatArray
+) -> tuple[EmissionSpectrum | None, float]:
+    """The emitter's spectrum inside the film's range, and the flux it has there [W]."""
+    spectrum = emitter.emission()
+    low, high = float(edges_nm[0]), float(edges_nm[-1])
+    inside = float(np.sum(spectrum.band_flux(np.array([low, high]))))
+    if inside <= 0.0:
+        return None, 0.0
+    return spectrum.restricted(low, high), emitter.flux * inside / spectrum.total
+
+
+def _fractions(spectra: list[tuple[EmissionSpectrum | None, float]]) -> list[float]:
+    """Each emitter's fraction of the whole flux."""
+    total = sum(flux for _, flux in spectra)
+    return [flux / total for _, flux in spectra]
+
+
+def _share(total: int, weights: list[float]) -> list[int]:
+    """Whole numbers in proportion to `weights` that add up to `total`, none of them zero if
+    `total` allows it: a target without photons would leave its light to the others' weights."""
+    scaled = np.asarray(weights) / np.sum(weights) * total
+    counts = np.maximum(np.floor(scaled).astype(int), 1)
+    counts[np.argmax(counts)] += total - counts.sum()
+    return [int(count) for count in np.maximum(counts, 0)]
+
+
+def _segments(spectrum: EmissionSpectrum) -> list[tuple[float, ...]]:
+    """Rows of Segment: the continuous part's trapezoids, then the lines, with their shares."""
+    knots, density = spectrum.wavelength_nm, spectrum.density
+    rows = []
+    for i in range(len(knots) - 1):
+        width = float(knots[i + 1] - knots[i])
+        mass = 0.5 * width * float(density[i] + density[i + 1])
+        if mass > 0.0:
+            rows.append((float(knots[i]), width, float(density[i]), float(density[i + 1]), mass))
+    for line_nm, flux in zip(spectrum.line_wavelength_nm, spectrum.line_flux, strict=True):
+        rows.append((float(line_nm), 0.0, 0.0, 0.0, float(flux)))
+    edges = np.concatenate([[0.0], np.cumsum([row[-1] for row in rows])])
+    edges /= edges[-1]
+    return [(*row[:-1], edges[i], edges[i + 1]) for i, row in enumerate(rows)]
+
+
+def _emitter_row(compiled: CompiledScene, emitter: Any) -> tuple[Any, ...]:
+    """The geometric fields of an Emitter: kind to sin2_half."""
+    centre = compiled.to_local(emitter.position)
+    frame = np.eye(3)
+    if isinstance(emitter, scenes.Beam):
+        frame = np.stack(emitter.frame())
+        sin2_half = np.sin(0.5 * np.radians(emitter.divergence_deg)) ** 2
+        if isinstance(emitter.profile, scenes.RoundProfile):
+            radius = emitter.profile.radius
+            return int(BEAM), 1, centre, frame, radius, radius, radius, sin2_half
+        half_u, half_v = 0.5 * emitter.profile.width, 0.5 * emitter.profile.height
+        return int(BEAM), 0, centre, frame, half_u, half_v, 0.0, sin2_half
+    if isinstance(emitter, scenes.Point):
+        return int(POINT), 0, centre, frame, 0.0, 0.0, 0.0, 1.0
+    if isinstance(emitter, scenes.Spot):
+        sin2_half = np.sin(0.5 * np.radians(emitter.half_angle_deg)) ** 2
+        return int(SPOT), 0, centre, axis_frame(emitter.direction), 0.0, 0.0, 0.0, sin2_half
+    if isinstance(emitter, scenes.SphereLamp):
+        return int(SPHERE_LAMP), 0, centre, frame, 0.0, 0.0, emitter.radius, 1.0
+    frame = np.stack(emitter.frame())
+    half_u, half_v = 0.5 * emitter.size[0], 0.5 * emitter.size[1]
+    return int(RECTANGLE_LAMP), 0, centre, frame, half_u, half_v, 0.0, 1.0
+
+
+def _find_targets(compiled: CompiledScene, emitter: Any) -> list[tuple[float, tuple[Any, ...]]]:
+    """(share of photons, Target fields but the count); the lamp's own distribution first."""
+    base = (int(AIM_BASE), np.zeros(3), np.eye(3), 0.0, 0.0, 0.0)
+    if isinstance(emitter, scenes.Beam):
+        return [(1.0, base)]
+    # A spherical lamp draws directions from its centre: what it can hit is larger by its radius.
+    margin = emitter.radius if isinstance(emitter, scenes.SphereLamp) else 0.0
+    specular, receivers = [], []
+    for item in compiled.scene.objects:
+        aim = _aim_at(compiled, item.shape, margin)
+        if aim is None:
+            continue
+        if isinstance(item.material, scenes.Dielectric):
+            specular.append(aim)
+        elif isinstance(item.material, scenes.Lambertian):
+            receivers.append(aim)
+    aims = [(SPECULAR_SHARE / len(specular), aim) for aim in specular]
+    aims += [(RECEIVER_SHARE / len(receivers), aim) for aim in receivers]
+    return [(1.0 - SPECULAR_SHARE - RECEIVER_SHARE, base), *aims]
+
+
+def _aim_at(compiled: CompiledScene, shape: Any, margin: float) -> tuple[Any, ...] | None:
+    """Target fields that cover `shape`; None for a plane without end, which has no aim."""
+    if isinstance(shape, scenes.Plane):
+        return None
+    if isinstance(shape, scenes.Rectangle):
+        half_u, half_v = 0.5 * shape.size[0] + margin, 0.5 * shape.size[1] + margin
+        centre = compiled.to_local(shape.position)
+        return int(AIM_AREA), centre, np.stack(shape.frame()), half_u, half_v, 0.0
+    centre, radius = shape.bounding_sphere()
+    return int(AIM_CONE), compiled.to_local(centre), np.eye(3), 0.0, 0.0, radius + margin

@@ -1,0 +1,83 @@
+"""The device-side layout of stored photons, and the packing of their small fields."""
+
+import functools
+from types import SimpleNamespace
+
+import warp as wp
+
+from sim.precision import precision_types
+
+__all__ = [
+    "HISTORY_LIMIT",
+    "MAX_FACES",
+    "MAX_OBJECTS",
+    "add_reflection",
+    "add_refraction",
+    "make_photon_structs",
+    "surface_key",
+]
+
+MAX_OBJECTS = 1 << 17
+MAX_FACES = 1 << 13
+"""Objects and faces that a surface key of 31 bits can tell apart."""
+
+HISTORY_LIMIT = 1023
+"""Each count of a photon's history stops here: 10 bits apiece."""
+
+
+@wp.func
+def surface_key(prim: int, face: int, side: int):
+    """One integer for object, face and side: equal keys mean the same side of the same face."""
+    return (prim << 14) | (face << 1) | side
+
+
+@wp.func
+def add_refraction(history: int):
+    """History with one more refraction (bits 0 to 9)."""
+    if (history & 1023) == 1023:
+        return history
+    return history + 1
+
+
+@wp.func
+def add_reflection(history: int):
+    """History with one more specular reflection (bits 10 to 19; 20 to 29 count bounces)."""
+    if ((history >> 10) & 1023) == 1023:
+        return history
+    return history + 1024
+
+
+@functools.cache
+def make_photon_structs(precision: str) -> SimpleNamespace:
+    """Structs Photons (arrays, one element a stored photon) and Job (one launch's share).
+
+    Photons: `position` in the local frame [m]; `direction` where the photon was going, unit;
+    `wavelength_nm`; `flux` [W]; `surface`, see `surface_key`; `history`, packed counts.
+    """
+    types = precision_types(precision)
+    real, vec3 = types.real, types.vec3
+
+    @wp.struct
+    class Photons:
+        position: wp.array(dtype=vec3)
+        direction: wp.array(dtype=wp.vec3)
+        wavelength_nm: wp.array(dtype=wp.float32)
+        flux: wp.array(dtype=wp.float64)
+        surface: wp.array(dtype=int)
+        history: wp.array(dtype=int)
+
+    @wp.struct
+    class Job:
+        """Photons of one emitter and target, and the slots their deposits may take."""
+
+        emitter: int
+        target: int
+        seed_row: int
+        key: wp.uint64
+        range_row: int
+        first_slot: int
+        slot_count: int
+        max_interactions: int
+        branch_threshold: real
+
+    return SimpleNamespace(Photons=Photons, Job=Job)

@@ -1,0 +1,356 @@
+"""Trace photons from the lamps to the diffuse surfaces, and store what arrives.
+
+At a boundary the stronger of the two branches is followed with its weight and the other is put
+on a stack while its flux matters; below a threshold it plays Russian roulette for the threshold's
+flux. Nothing is averaged away, and the books keep what roulette adds or takes.
+
+References:
+    Jensen (1996), "Global illumination using photon maps", §2.1: photon tracing.
+    Arvo & Kirk (1990), "Particle transport and image synthesis", SIGGRAPH, §4: roulette.
+"""
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import warp as wp
+
+from sim.features import Features
+from sim.launch import cut_ranges, launch_ranges
+from sim.photons.emission import make_emission
+from sim.photons.energy import BOOK_COLUMNS, EnergyBooks
+from sim.photons.lamp_structs import make_lamp_structs
+from sim.photons.lamps import Lamps
+from sim.photons.photon_structs import (
+    add_reflection,
+    add_refraction,
+    make_photon_structs,
+    surface_key,
+)
+from sim.precision import precision_types
+from sim.sampling.counter import fold_key, hash64, to_unit
+from sim.sampling.sobol import DIMENSIONS
+from sim.scene_data import CompiledScene
+from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+
+__all__ = ["PhotonBatch", "make_trace_photons", "trace_photons"]
+
+RANGE_SIZE = 8192
+"""Photons a launch: some milliseconds of work, so that cores share evenly and Ctrl-C is heard."""
+
+BRANCH_THRESHOLD = 0.01
+"""A side branch below this fraction of its photon's flux plays roulette for it."""
+
+STACK_SIZE = wp.constant(8)
+
+_SLOTS_PER_PHOTON = 4
+"""Room for deposits: on the CPU it takes address space, not memory, until it is written to. A
+pass that needs more is traced again with room for exactly what its kernels counted."""
+
+
+@functools.cache
+def make_trace_photons(precision: str, features: Features) -> Any:
+    """Kernel `trace_photons(start, scene, lamps, job, photons, counts, books)`."""
+    transport = make_transport(precision, features)
+    real, vec3, interact = transport.real, transport.vec3, transport.interact
+    media_indices = transport.media_indices
+    scene_type, ray_type = transport.Scene, transport.Ray
+    lamps_type = make_lamp_structs(precision).Lamps
+    photon_structs = make_photon_structs(precision)
+    photons_type, job_type = photon_structs.Photons, photon_structs.Job
+    emit = make_emission(precision)
+
+    @wp.func
+    def store(
+        photons: photons_type, slot: int, point: vec3, direction: vec3, wavelength_nm: real,
+        flux: real, surface: int, history: int,
+    ):
+        photons.position[slot] = point
+        photons.direction[slot] = wp.vec3(
+            wp.float32(direction[0]), wp.float32(direction[1]), wp.float32(direction[2])
+        )
+        photons.wavelength_nm[slot] = wp.float32(wavelength_nm)
+        photons.flux[slot] = wp.float64(flux)
+        photons.surface[slot] = surface
+        photons.history[slot] = history
+
+    @wp.kernel(module="unique", enable_backward=False)
+    def trace_photons(
+        start: int,
+        scene: scene_type,
+        lamps: lamps_type,
+        job: job_type,
+        out_photons: photons_type,
+        out_counts: wp.array(dtype=int),
+        out_books: wp.array2d(dtype=wp.float64),
+    ):
+        index = wp.uint32(start + wp.tid())
+        ray, wavelength_nm, flux = emit(
+            lamps, job.emitter, job.target, job.seed_row, index, job.key
+        )
+        indices = media_indices(scene, wavelength_nm)
+        emitted = flux
+        deposited = real(0.0)
+        absorbed = real(0.0)
+        escaped = real(0.0)
+        culled = real(0.0)
+        threshold = flux * job.branch_threshold
+        history = int(0)
+        draws = wp.uint64(index) << wp.uint64(24)
+
+        stack_ray = wp.zeros(shape=(8,), dtype=ray_type)
+        stack_flux = wp.zeros(shape=(8,), dtype=real)
+        stack_history = wp.zeros(shape=(8,), dtype=int)
+        depth = int(0)
+        alive = flux > real(0.0)
+        for step in range(job.max_interactions):
+            if not alive:
+                if depth == 0:
+                    break
+                depth -= 1
+                # Field by field: see `interact`.
+                pending = stack_ray[depth]
+                ray.origin = pending.origin
+                ray.direction = pending.direction
+                ray.prim = pending.prim
+                ray.face = pending.face
+                flux = stack_flux[depth]
+                history = stack_history[depth]
+                alive = True
+            met = interact(scene, ray, indices)
+            if met.event == EVENT_BOUNDARY:
+                reflected_flux = flux * met.reflectance
+                refracted_flux = flux - reflected_flux
+                side_ray = ray_type()
+                side_ray.origin = met.point
+                side_ray.prim = met.prim
+                side_ray.face = met.face
+                side_flux = reflected_flux
+                side_history = add_reflection(history)
+                ray.origin = met.point
+                ray.prim = met.prim
+                ray.face = met.face
+                if refracted_flux >= reflected_flux:
+                    side_ray.direction = met.reflected
+                    ray.direction = met.refracted
+                    history = add_refraction(history)
+                    flux = refracted_flux
+                else:
+                    side_ray.direction = met.refracted
+                    ray.direction = met.reflected
+                    side_history = add_refraction(history)
+                    side_flux = refracted_flux
+                    history = add_reflection(history)
+                    flux = reflected_flux
+                if side_flux > real(0.0):
+                    kept = side_flux
+                    if side_flux < threshold:
+                        u = to_unit(hash64(job.key + wp.uint64(1), draws + wp.uint64(step)), flux)
+                        kept = real(0.0)
+                        if u * threshold < side_flux:
+                            kept = threshold
+                    if depth == STACK_SIZE:
+                        kept = real(0.0)
+                    culled += side_flux - kept
+                    if kept > real(0.0):
+                        stack_ray[depth] = side_ray
+                        stack_flux[depth] = kept
+                        stack_history[depth] = side_history
+                        depth += 1
+            else:
+                alive = False
+                if met.event == EVENT_DEPOSIT:
+                    deposited += flux
+                    slot = wp.atomic_add(out_counts, job.range_row, 1)
+                    if slot < job.slot_count:
+                        store(
+                            out_photons, job.first_slot + slot, met.point, ray.direction,
+                            wavelength_nm, flux, surface_key(met.prim, met.face, met.side),
+                            history,
+                        )
+                elif met.event == EVENT_ABSORB:
+                    absorbed += flux
+                else:
+                    escaped += flux
+
+        if alive:
+            culled += flux
+        for k in range(depth):
+            culled += stack_flux[k]
+        wp.atomic_add(out_books, job.range_row, 0, wp.float64(emitted))
+        wp.atomic_add(out_books, job.range_row, 1, wp.float64(deposited))
+        wp.atomic_add(out_books, job.range_row, 2, wp.float64(absorbed))
+        wp.atomic_add(out_books, job.range_row, 3, wp.float64(escaped))
+        wp.atomic_add(out_books, job.range_row, 4, wp.float64(culled))
+
+    return trace_photons
+
+
+@dataclass(frozen=True)
+class PhotonBatch:
+    """Stored photons of one pass, on the device, and the pass's energy books.
+
+    Attributes:
+        data: the device-side Photons struct, with gaps.
+        slots: (n,) int32, the slots of `data` that hold photons, in the order of emission.
+        books: where the pass's flux went.
+        origin: (3,), world position of the local frame's origin [m].
+    """
+
+    data: Any
+    slots: npt.NDArray[np.int32]
+    books: EnergyBooks
+    origin: npt.NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.slots)
+
+    def to_numpy(self) -> dict[str, npt.NDArray[Any]]:
+        """The photons as host arrays, one row a photon.
+
+        Returns:
+            position (n, 3) in world coordinates [m], direction (n, 3), wavelength_nm, flux [W],
+            object and face (n,), side (0 front or outside, 1 back or inside), refractions,
+            reflections and bounces (n,).
+        """
+        surface = self.data.surface.numpy()[self.slots]
+        history = self.data.history.numpy()[self.slots]
+        return {
+            "position": self.data.position.numpy()[self.slots] + self.origin,
+            "direction": self.data.direction.numpy()[self.slots],
+            "wavelength_nm": self.data.wavelength_nm.numpy()[self.slots],
+            "flux": self.data.flux.numpy()[self.slots],
+            "object": surface >> 14,
+            "face": (surface >> 1) & 8191,
+            "side": surface & 1,
+            "refractions": history & 1023,
+            "reflections": (history >> 10) & 1023,
+            "bounces": (history >> 20) & 1023,
+        }
+
+
+@dataclass
+class _Share:
+    """One range's place: its stream, its photons, its slots."""
+
+    stream_row: int
+    start: int
+    count: int
+    first_slot: int
+    slot_count: int
+
+
+def trace_photons(
+    compiled: CompiledScene,
+    lamps: Lamps,
+    *,
+    seed: int,
+    pass_index: int,
+    max_interactions: int,
+    threads: int,
+    on_done: Callable[[int], None] | None = None,
+) -> PhotonBatch:
+    """Emit and trace one pass of photons.
+
+    Args:
+        compiled: the scene.
+        lamps: its emitters, with the streams of this pass.
+        seed: the run's seed.
+        pass_index: which pass: it alone decides the scramble.
+        max_interactions: surfaces that one photon and all its branches may meet.
+        threads: CPU threads.
+        on_done: told of finished photons.
+    """
+    lamps.seed(compiled.device, seed, pass_index)
+    shares: list[_Share] = []
+    slot = 0
+    for row, stream in enumerate(lamps.streams):
+        for start, count in cut_ranges(stream.photons, RANGE_SIZE):
+            room = count * _SLOTS_PER_PHOTON
+            shares.append(_Share(row, start, count, slot, room))
+            slot += room
+    run = _Run(compiled, lamps, seed, pass_index, max_interactions, threads)
+    photons, counts, books = run.trace(shares, slot, on_done)
+    short = [i for i, share in enumerate(shares) if counts[i] > share.slot_count]
+    if short:
+        # Their kernels counted what did not fit: now the need of every range is known exactly.
+        slot = 0
+        for share, count in zip(shares, counts, strict=True):
+            share.first_slot, share.slot_count = slot, int(count)
+            slot += int(count)
+        photons, counts, books = run.trace(shares, slot, None)
+    slots = np.concatenate(
+        [
+            np.arange(share.first_slot, share.first_slot + count, dtype=np.int32)
+            for share, count in zip(shares, counts, strict=True)
+        ]
+    )
+    return PhotonBatch(photons, slots, EnergyBooks.from_rows(books), compiled.origin)
+
+
+@dataclass(frozen=True)
+class _Run:
+    """One pass's kernel and what its launches share."""
+
+    compiled: CompiledScene
+    lamps: Lamps
+    seed: int
+    pass_index: int
+    max_interactions: int
+    threads: int
+
+    def trace(
+        self, shares: list[_Share], slots: int, on_done: Callable[[int], None] | None
+    ) -> tuple[Any, npt.NDArray[np.int32], npt.NDArray[np.float64]]:
+        """Launch every share; return the Photons struct, deposits a share, and books a share."""
+        compiled, device = self.compiled, self.compiled.device
+        kernel = make_trace_photons(compiled.precision, compiled.features)
+        photons = allocate_photons(compiled.precision, device, slots)
+        counts = wp.zeros(len(shares), dtype=int, device=device)
+        books = wp.zeros((len(shares), len(BOOK_COLUMNS)), dtype=wp.float64, device=device)
+
+        def inputs_of(number: int) -> list[Any]:
+            job = self._job(number, shares[number])
+            return [compiled.data, self.lamps.data, job, photons, counts, books]
+
+        launch_ranges(
+            kernel,
+            [(share.start, share.count) for share in shares],
+            inputs_of,
+            device=device,
+            threads=self.threads,
+            on_done=on_done,
+        )
+        return photons, counts.numpy(), books.numpy()
+
+    def _job(self, number: int, share: _Share) -> Any:
+        """The Job struct of one range."""
+        stream = self.lamps.streams[share.stream_row]
+        job = make_photon_structs(self.compiled.precision).Job()
+        job.emitter = stream.emitter
+        job.target = stream.target
+        job.seed_row = share.stream_row * DIMENSIONS
+        job.key = fold_key(self.seed, self.pass_index, share.stream_row)
+        job.range_row = number
+        job.first_slot = share.first_slot
+        job.slot_count = share.slot_count
+        job.max_interactions = self.max_interactions
+        job.branch_threshold = BRANCH_THRESHOLD
+        return job
+
+
+def allocate_photons(precision: str, device: str, slots: int) -> Any:
+    """A Photons struct with room for `slots` photons, not initialised."""
+    types = precision_types(precision)
+    photons = make_photon_structs(precision).Photons()
+    room = max(1, slots)
+    photons.position = wp.empty(room, dtype=types.vec3, device=device)
+    photons.direction = wp.empty(room, dtype=wp.vec3, device=device)
+    photons.wavelength_nm = wp.empty(room, dtype=wp.float32, device=device)
+    photons.flux = wp.empty(room, dtype=wp.float64, device=device)
+    photons.surface = wp.empty(room, dtype=int, device=device)
+    photons.history = wp.empty(room, dtype=int, device=device)
+    return photons

@@ -1,0 +1,111 @@
+"""Progress of a rendering for people: a bar on a terminal, plain lines in a log."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Iterator
+from typing import TextIO
+
+from sim.progress import Progress, ProgressCallback
+
+__all__ = ["ProgressLines", "progress_display", "progress_text"]
+
+_SECONDS_BETWEEN_LINES = 2.0
+
+
+@contextlib.contextmanager
+def progress_display(stream: TextIO) -> Iterator[ProgressCallback]:
+    """Show progress on `stream` while the block runs.
+
+    Args:
+        stream: Where to: a terminal gets a bar that stays in place, anything else plain lines.
+
+    Yields:
+        The callback to hand to the renderer; it may be called from any thread.
+    """
+    if not stream.isatty():
+        yield ProgressLines(stream)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn
+    from rich.progress import Progress as RichProgress
+
+    columns = BarColumn(), TextColumn("{task.description}", markup=False)
+    with RichProgress(*columns, console=Console(file=stream), transient=True) as bar:
+        task = bar.add_task("starting", total=None)
+        rate = _Rate()
+
+        def show(progress: Progress) -> None:
+            bar.update(
+                task,
+                total=progress.photons_total,
+                completed=progress.photons_done,
+                description=progress_text(progress, rate.after(progress)),
+            )
+
+        yield show
+
+
+class ProgressLines:
+    """Writes a line when a stage begins in the first pass, and then one every two seconds."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._rate = _Rate()
+        self._stages: set[str] = set()
+        self._last_seconds = -math.inf
+
+    def __call__(self, progress: Progress) -> None:
+        """Write one line, if it is time for one."""
+        rate = self._rate.after(progress)
+        is_due = progress.seconds - self._last_seconds >= _SECONDS_BETWEEN_LINES
+        if is_due or progress.stage not in self._stages:
+            self._stages.add(progress.stage)
+            self._last_seconds = progress.seconds
+            print(progress_text(progress, rate), file=self._stream, flush=True)
+
+
+class _Rate:
+    """Photons per second since the first report that counted any.
+
+    What comes before, mostly compiling, happens once, and would spoil the estimate.
+    """
+
+    def __init__(self) -> None:
+        self._first: Progress | None = None
+
+    def after(self, progress: Progress) -> float | None:
+        """The rate [1/s] as of this report; None while it is not known."""
+        if self._first is None:
+            if progress.photons_done > 0:
+                self._first = progress
+            return None
+        seconds = progress.seconds - self._first.seconds
+        photons = progress.photons_done - self._first.photons_done
+        return photons / seconds if seconds > 0.0 and photons > 0 else None
+
+
+def progress_text(progress: Progress, photons_per_second: float | None) -> str:
+    """One report in words: ``pass 3/8, trace: 1.5M of 4M photons, 2.1M/s, 1 s left``."""
+    text = (
+        f"pass {progress.pass_index + 1}/{progress.passes}, {progress.stage}: "
+        f"{_rounded(progress.photons_done)} of {_rounded(progress.photons_total)} photons"
+    )
+    if photons_per_second is not None:
+        left = (progress.photons_total - progress.photons_done) / photons_per_second
+        text += f", {_rounded(photons_per_second)}/s, {_duration(left)} left"
+    return text
+
+
+def _rounded(count: float) -> str:
+    """A count in three digits: 950, 1.5k, 2.05M, 12G."""
+    for size, suffix in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if count >= size:
+            return f"{count / size:.3g}{suffix}"
+    return f"{count:.3g}"
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(math.ceil(seconds), 60)
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"

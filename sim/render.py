@@ -1,0 +1,196 @@
+"""Render a scene: the algorithm, top down.
+
+A pass is a pure function of the compiled scene, the settings and the pass's index: it emits
+photons, builds one photon map, and exposes the film once. Passes are independent and averaged,
+so their spread is the picture's standard error.
+
+The gather radius shrinks from pass to pass, r²ᵢ₊₁ = r²ᵢ (i + α)/(i + 1), so that bias and noise
+vanish together.
+
+Reference:
+    Knaus & Zwicker (2011), "Progressive photon mapping: a probabilistic approach", ACM Trans.
+    Graph. 30(3), eq. (15).
+"""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import numpy.typing as npt
+
+import scenes
+from sim.device import start_device
+from sim.errors import SettingsError
+from sim.image.camera import compile_camera
+from sim.image.film import Film, create_film, expose
+from sim.image.footprint import pixel_footprint
+from sim.image.picture import Picture
+from sim.photons.energy import EnergyBooks
+from sim.photons.lamps import Lamps, compile_lamps
+from sim.photons.photon_map import build_photon_map
+from sim.photons.tracing import trace_photons
+from sim.progress import Progress, ProgressCallback
+from sim.scene_data import CompiledScene, compile_scene
+from sim.settings import RenderSettings, ResolvedSettings
+
+__all__ = ["gather_radius", "render"]
+
+FOOTPRINTS_A_RADIUS = 2.0
+"""The first pass gathers over a disc this many pixel widths in radius."""
+
+
+class _Watch:
+    """Adds up the seconds of each stage and passes progress on."""
+
+    def __init__(self, settings: ResolvedSettings, tell: ProgressCallback | None) -> None:
+        self.start = time.perf_counter()
+        self.timings: dict[str, float] = {}
+        self.settings = settings
+        self.tell = tell
+        self.photons_done = 0
+        self.pass_index = 0
+        self.stage = ""
+
+    @contextmanager
+    def timing(self, stage: str) -> Iterator[None]:
+        """Time a stage, under its name."""
+        self.stage = stage
+        self.report()
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            spent = time.perf_counter() - start
+            self.timings[stage] = self.timings.get(stage, 0.0) + spent
+
+    def count_photons(self, photons: int) -> None:
+        """More photons are done."""
+        self.photons_done += photons
+        self.report()
+
+    def report(self, _done: int = 0) -> None:
+        """Tell the callback how far the run is."""
+        if self.tell is not None:
+            self.tell(
+                Progress(
+                    stage=self.stage,
+                    pass_index=self.pass_index,
+                    passes=self.settings.passes,
+                    photons_done=self.photons_done,
+                    photons_total=self.settings.photons * self.settings.passes,
+                    seconds=time.perf_counter() - self.start,
+                )
+            )
+
+
+def render(
+    scene: scenes.Scene,
+    settings: RenderSettings | None = None,
+    *,
+    progress: ProgressCallback | None = None,
+) -> Picture:
+    """Render `scene` to spectral radiance.
+
+    Args:
+        scene: with a camera, at least one emitter, and at least one diffuse object.
+        settings: what to spend; by default the scene's own settings.
+        progress: told how far the run is, some times a second.
+
+    Returns:
+        The picture: band means with their standard error, and where the energy went.
+
+    Raises:
+        scenes.SceneError: the scene lacks something that a picture needs.
+        DeviceError: the device does not exist.
+        KeyboardInterrupt: on Ctrl-C, within a fraction of a second.
+    """
+    scene.require_renderable()
+    plan = (settings or RenderSettings()).resolved(scene)
+    watch = _Watch(plan, progress)
+    with watch.timing("compile"):
+        device = start_device(plan.device)
+        compiled = compile_scene(scene, precision=plan.precision, device=device)
+        edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
+        lamps = compile_lamps(compiled, edges_nm, plan.photons)
+        film = create_film(scene.film.height, scene.film.width, edges_nm, device)
+        radius = gather_radius(compiled, plan)
+    books = []
+    for pass_index in range(plan.passes):
+        watch.pass_index = pass_index
+        pass_radius = radius * radius_shrinkage(pass_index, plan.alpha)
+        books.append(_render_pass(compiled, lamps, film, plan, pass_radius, watch))
+    return Picture(
+        spectral_radiance=film.radiance(),
+        standard_error=film.standard_error(),
+        edges_nm=edges_nm,
+        energy=EnergyBooks.mean(books),
+        scene=scene,
+        settings=plan,
+        timings=watch.timings,
+    )
+
+
+def radius_shrinkage(pass_index: int, alpha: float) -> float:
+    """Radius of a pass relative to the first one's (Knaus & Zwicker 2011, eq. 15)."""
+    i = np.arange(1.0, pass_index + 1.0)
+    return float(np.sqrt(np.prod((i + alpha) / (i + 1.0))))
+
+
+def gather_radius(compiled: CompiledScene, settings: ResolvedSettings) -> float:
+    """The first pass's gather radius [m]: as set, or from the pixels' footprint.
+
+    Raises:
+        SettingsError: it is not set, and no pixel sees a diffuse surface to measure it on.
+    """
+    if settings.radius is not None:
+        return settings.radius
+    scene = compiled.scene
+    assert scene.camera is not None  # require_renderable has seen to it
+    camera = compile_camera(compiled, scene.camera, scene.film)
+    edges: npt.NDArray[np.float64] = scene.film.edges_nm
+    footprint = pixel_footprint(compiled, camera, float(0.5 * (edges[0] + edges[-1])))
+    if footprint is None:
+        raise SettingsError(
+            "radius", None, "a radius in metres, since the camera sees no diffuse surface"
+        )
+    return FOOTPRINTS_A_RADIUS * footprint
+
+
+def _render_pass(
+    compiled: CompiledScene,
+    lamps: Lamps,
+    film: Film,
+    plan: ResolvedSettings,
+    radius: float,
+    watch: _Watch,
+) -> EnergyBooks:
+    """Emit and trace photons, map them, and expose the film to them once."""
+    with watch.timing("trace photons"):
+        batch = trace_photons(
+            compiled,
+            lamps,
+            seed=plan.seed,
+            pass_index=watch.pass_index,
+            max_interactions=plan.max_interactions,
+            threads=plan.threads,
+            on_done=watch.count_photons,
+        )
+    with watch.timing("build photon map"):
+        photon_map = build_photon_map(
+            compiled, batch, film.edges_nm, radius, threads=plan.threads
+        )
+    with watch.timing("gather"):
+        scene = compiled.scene
+        assert scene.camera is not None
+        expose(
+            film,
+            compiled,
+            compile_camera(compiled, scene.camera, scene.film),
+            photon_map,
+            seed=plan.seed,
+            pass_index=watch.pass_index,
+            threads=plan.threads,
+            on_done=watch.report,
+        )
+    return batch.books

@@ -1,0 +1,3 @@
+"""Low-discrepancy and counter-based random numbers, and the shapes drawn from them."""
+
+__all__: list[str] = []

@@ -1,0 +1,204 @@
+"""The device-side layout of a scene: what each kernel is handed.
+
+Every array is of structs, one element an object, so that a kernel's scene argument is a dozen
+arrays rather than fifty numbers. Positions are in the scene's local frame [m].
+"""
+
+import functools
+from types import SimpleNamespace
+
+import warp as wp
+
+from sim.precision import precision_types
+
+__all__ = [
+    "ABSORBER",
+    "CAUCHY",
+    "DIELECTRIC",
+    "LAMBERTIAN",
+    "SELLMEIER",
+    "SHAPE_FLAT",
+    "SHAPE_LENS",
+    "SHAPE_POLYHEDRON",
+    "SHAPE_SPHERE",
+    "TABULATED",
+    "make_scene_structs",
+]
+
+DIELECTRIC = wp.constant(0)
+LAMBERTIAN = wp.constant(1)
+ABSORBER = wp.constant(2)
+
+SELLMEIER = wp.constant(0)
+CAUCHY = wp.constant(1)
+TABULATED = wp.constant(2)
+
+SHAPE_SPHERE = wp.constant(0)
+SHAPE_FLAT = wp.constant(1)
+SHAPE_POLYHEDRON = wp.constant(2)
+SHAPE_LENS = wp.constant(3)
+
+
+@functools.cache
+def make_shape_structs(precision: str) -> SimpleNamespace:
+    """Structs of the shapes: Sphere, Flat, Polyhedron, Plane, Lens."""
+    types = precision_types(precision)
+    real, vec3, mat33 = types.real, types.vec3, types.mat33
+
+    @wp.struct
+    class Sphere:
+        centre: vec3
+        radius: real
+        prim: int
+
+    @wp.struct
+    class Flat:
+        """A rectangle, a disk or a plane: its limits are infinite where it has none."""
+
+        centre: vec3
+        frame: mat33  # rows: u, v, normal
+        half_u: real
+        half_v: real
+        radius2: real
+        prim: int
+
+    @wp.struct
+    class Plane:
+        normal: vec3
+        offset: real
+
+    @wp.struct
+    class Polyhedron:
+        centre: vec3
+        first: int
+        count: int
+        prim: int
+
+    @wp.struct
+    class Lens:
+        centre: vec3
+        frame: mat33  # rows: u, v, axis
+        half_thickness: real
+        curvature_front: real
+        one_plus_conic_front: real
+        curvature_back: real
+        one_plus_conic_back: real
+        radius: real
+        rho2_limit: real
+        rim_low: real
+        rim_high: real
+        prim: int
+
+    return SimpleNamespace(
+        Sphere=Sphere, Flat=Flat, Plane=Plane, Polyhedron=Polyhedron, Lens=Lens
+    )
+
+
+@functools.cache
+def make_ray_structs(precision: str) -> SimpleNamespace:
+    """Structs of a ray and of what it meets: Ray, Hit, Interaction."""
+    types = precision_types(precision)
+    real, vec3 = types.real, types.vec3
+
+    @wp.struct
+    class Ray:
+        """A ray that has just left face `face` of object `prim` (−1: nothing)."""
+
+        origin: vec3
+        direction: vec3
+        prim: int
+        face: int
+
+    @wp.struct
+    class Hit:
+        """The nearest surface: distance, object, face, and its outward (or front) unit normal."""
+
+        t: real
+        normal: vec3
+        prim: int
+        face: int
+
+    @wp.struct
+    class Interaction:
+        """What the surface does. `normal` faces the incoming ray; `side` 1 is the inside or back.
+
+        At a boundary: `eta` is η_i/η_t, `reflectance` the mean of R_s and R_p, `total` 1 where
+        the reflection is total (then `refracted` is unset).
+        """
+
+        event: int
+        t: real
+        point: vec3
+        normal: vec3
+        prim: int
+        face: int
+        side: int
+        dispersive: int
+        total: int
+        eta: real
+        reflectance: real
+        reflected: vec3
+        refracted: vec3
+
+    return SimpleNamespace(Ray=Ray, Hit=Hit, Interaction=Interaction)
+
+
+@functools.cache
+def make_scene_structs(precision: str) -> SimpleNamespace:
+    """All structs of one precision, and the scalar types they are made of.
+
+    Returns:
+        A namespace with `real`, `vec3`, `mat33`, the shape structs, the ray structs, and Body
+        (one a scene object), Medium and Scene.
+    """
+    types = precision_types(precision)
+    real = types.real
+    shapes, rays = make_shape_structs(precision), make_ray_structs(precision)
+    sphere, flat, plane = shapes.Sphere, shapes.Flat, shapes.Plane
+    polyhedron, lens = shapes.Polyhedron, shapes.Lens
+
+    @wp.struct
+    class Body:
+        """An object: its shape (kind, and row in that kind's array), its material and media."""
+
+        shape: int
+        row: int
+        material: int
+        medium_outside: int
+        medium_inside: int
+        dispersive: int
+
+    @wp.struct
+    class Medium:
+        formula: int
+        knot_first: int
+        knot_count: int
+        air_power: int  # +1: multiply by the index of air, −1: divide by it
+
+    @wp.struct
+    class Scene:
+        spheres: wp.array(dtype=sphere)
+        flats: wp.array(dtype=flat)
+        polyhedra: wp.array(dtype=polyhedron)
+        planes: wp.array(dtype=plane)
+        lenses: wp.array(dtype=lens)
+        bodies: wp.array(dtype=Body)
+        media: wp.array(dtype=Medium)
+        coefficients: wp.array2d(dtype=real)
+        knots_nm: wp.array(dtype=real)
+        cubics: wp.array2d(dtype=real)
+        sphere_count: int
+        flat_count: int
+        polyhedron_count: int
+        lens_count: int
+
+    return SimpleNamespace(
+        real=real,
+        vec3=types.vec3,
+        mat33=types.mat33,
+        Body=Body,
+        Medium=Medium,
+        Scene=Scene,
+        **vars(shapes),
+        **vars(rays),
+    )

@@ -1,0 +1,155 @@
+"""How a picture is rendered: everything that is not the scene itself.
+
+A setting left at ``None`` takes the scene's own default (its ``[render]`` table), then the value
+in `DEFAULTS`. `RenderSettings.resolved` does so, and what it returns has no ``None`` left but the
+gather radius, whose default depends on the camera.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import operator
+import os
+import re
+from typing import TYPE_CHECKING, Any, Final, Literal, SupportsFloat, SupportsIndex, TypeAlias
+
+from sim.errors import SettingsError
+
+if TYPE_CHECKING:
+    from scenes import Scene
+
+__all__ = ["DEFAULTS", "Precision", "RenderSettings", "ResolvedSettings"]
+
+Precision: TypeAlias = Literal["float32", "float64"]
+
+DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256}
+
+# The smallest and largest value of each whole-number setting. Totals (photons times passes) stay
+# within int64, and a photon's index within a pass within the 2³² points of a Sobol sequence.
+_WHOLE_NUMBERS: Final = {
+    "photons": (1, 2**32),
+    "passes": (1, 2**20),
+    "max_interactions": (1, 2**16),
+    "seed": (0, 2**63 - 1),
+    "threads": (1, 1024),
+}
+_PRECISIONS: Final = ("float32", "float64")
+_DEVICE: Final = re.compile(r"cpu|cuda:\d+")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class RenderSettings:
+    """Settings of one rendering.
+
+    Attributes:
+        photons: Photons emitted in each pass.
+        passes: Independent passes that are averaged; two or more give a standard error.
+        radius: Gather radius of the first pass [m]; None: from the pixel's footprint.
+        alpha: How slowly the gather radius shrinks, r²ᵢ₊₁ = r²ᵢ (i + α)/(i + 1) (Knaus and
+            Zwicker 2011); 1 keeps it.
+        max_interactions: Surfaces that one path may meet before it is culled.
+        seed: Key of every random sequence; equal seeds give equal pictures.
+        threads: CPU threads; None: all cores. It does not change the picture.
+        device: "cpu", or "cuda:0" and so on.
+        precision: Floating-point type of tracing; None: float64 on the CPU, float32 on CUDA.
+
+    Raises:
+        SettingsError: A value is outside what is allowed.
+    """
+
+    photons: int | None = None
+    passes: int | None = None
+    radius: float | None = None
+    alpha: float = 2 / 3
+    max_interactions: int | None = None
+    seed: int = 0
+    threads: int | None = None
+    device: str = "cpu"
+    precision: Precision | None = None
+
+    def __post_init__(self) -> None:
+        for field, (lowest, highest) in _WHOLE_NUMBERS.items():
+            value = getattr(self, field)
+            if value is not None or field == "seed":
+                self._replace(field, _whole_number(field, value, lowest, highest))
+        if self.radius is not None:
+            self._replace("radius", _positive_number("radius", self.radius, math.inf))
+        self._replace("alpha", _positive_number("alpha", self.alpha, 1.0))
+        if not _DEVICE.fullmatch(str(self.device)):
+            raise SettingsError("device", self.device, "'cpu', 'cuda:0', 'cuda:1', …")
+        if self.precision is not None and self.precision not in _PRECISIONS:
+            raise SettingsError("precision", self.precision, "'float32' or 'float64'")
+
+    def _replace(self, field: str, value: object) -> None:
+        """Store a validated value as a plain Python number, although the class is frozen."""
+        object.__setattr__(self, field, value)
+
+    def resolved(self, scene: Scene) -> ResolvedSettings:
+        """Fill in what was left open: from the scene's ``[render]`` table, then from `DEFAULTS`.
+
+        Args:
+            scene: The scene that is to be rendered.
+
+        Returns:
+            The same settings with nothing left open but, perhaps, the radius.
+        """
+        values = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        for field in ("photons", "passes", "radius", "max_interactions"):
+            if values[field] is None:
+                values[field] = getattr(scene.render, field)
+            if values[field] is None:
+                values[field] = DEFAULTS.get(field)
+        if values["threads"] is None:
+            values["threads"] = _available_cores()
+        if values["precision"] is None:
+            values["precision"] = "float64" if self.device == "cpu" else "float32"
+        return ResolvedSettings(**values)
+
+    def reproducing(self) -> dict[str, Any]:
+        """The settings that decide the picture, ready for JSON: all but the number of threads."""
+        values = dataclasses.asdict(self)
+        del values["threads"]
+        return values
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ResolvedSettings(RenderSettings):
+    """Render settings with nothing left open, except that the radius may be None."""
+
+    photons: int
+    passes: int
+    max_interactions: int
+    threads: int
+    precision: Precision
+
+
+def _whole_number(field: str, value: SupportsIndex, lowest: int, highest: int) -> int:
+    """`value` as an int within [lowest, highest]; a bool is refused: it is a slip."""
+    allowed = f"a whole number from {lowest} to {highest}"
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise SettingsError(field, value, allowed) from None
+    if isinstance(value, bool) or not lowest <= number <= highest:
+        raise SettingsError(field, value, allowed)
+    return number
+
+
+def _positive_number(field: str, value: SupportsFloat, highest: float) -> float:
+    """`value` as a finite float within (0, highest]."""
+    allowed = "a finite number above 0" + (f", at most {highest:g}" if highest < math.inf else "")
+    try:
+        number = math.nan if isinstance(value, bool | str) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not (0.0 < number <= highest and math.isfinite(number)):
+        raise SettingsError(field, value, allowed)
+    return number
+
+
+def _available_cores() -> int:
+    """Cores that this process may use, which in a container can be fewer than there are."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,291 @@
+"""One ray through a scene, followed by refraction: for tests, and for pictures of the paths.
+
+It advances by the same `interact` step as photons and camera paths.
+"""
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import warp as wp
+
+import scenes
+from sim.analytic import angle_between
+from sim.device import start_device
+from sim.errors import SettingsError
+from sim.features import Features
+from sim.scene_data import CompiledScene, compile_scene
+from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+
+__all__ = ["RayPath", "trace_compiled_rays", "trace_ray"]
+
+FloatArray = npt.NDArray[np.float64]
+
+_ESCAPE = 0
+_REFRACT = 1
+_REFLECT = 2
+_TOTAL = 3
+_DEPOSIT = 4
+_ABSORB = 5
+_NAMES = ("escape", "refract", "reflect", "total internal reflection", "deposit", "absorb")
+
+
+@dataclass(frozen=True)
+class RayPath:
+    """Where one ray went.
+
+    Attributes:
+        points: (n + 1, 3), start, vertices and end [m]. A ray that escapes ends at the scene's
+            bounds, or one unit further where it has left them already.
+        directions: (n, 3), unit, of each segment.
+        events: n strings, what happened at the end of each segment: "refract", "reflect",
+            "total internal reflection", "deposit", "absorb", "escape", or "limit" if the ray
+            was still going after `max_interactions`.
+        objects: n names of the objects met, "" where nothing was.
+        reflectances: (n,) mean reflectance of s and p light at each vertex; 0 where the ray
+            ends.
+        wavelength_nm: of the ray.
+    """
+
+    points: FloatArray
+    directions: FloatArray
+    events: tuple[str, ...]
+    objects: tuple[str, ...]
+    reflectances: FloatArray
+    wavelength_nm: float
+
+    @property
+    def deviation(self) -> float:
+        """Angle between the first and the last direction [rad]."""
+        return float(angle_between(self.directions[0], self.directions[-1]))
+
+    @property
+    def transmittance(self) -> float:
+        """Fraction of the flux that takes this path."""
+        factors = [
+            {"refract": 1.0 - r, "reflect": r}.get(event, 1.0)
+            for event, r in zip(self.events, self.reflectances, strict=True)
+        ]
+        return float(np.prod(factors))
+
+
+@functools.cache
+def make_trace_single(precision: str, features: Features) -> Any:
+    """Kernel that follows one ray a thread and records its vertices."""
+    transport = make_transport(precision, features)
+    real, vec3, interact = transport.real, transport.vec3, transport.interact
+    media_indices = transport.media_indices
+    scene_type, ray_type = transport.Scene, transport.Ray
+
+    @wp.kernel(module="unique", enable_backward=False)
+    def trace_single(
+        scene: scene_type,
+        origins: wp.array(dtype=vec3),
+        directions: wp.array(dtype=vec3),
+        wavelengths_nm: wp.array(dtype=real),
+        reflect_first: int,
+        out_points: wp.array2d(dtype=vec3),
+        out_directions: wp.array2d(dtype=vec3),
+        out_events: wp.array2d(dtype=int),
+        out_prims: wp.array2d(dtype=int),
+        out_reflectances: wp.array2d(dtype=real),
+        out_counts: wp.array(dtype=int),
+    ):
+        i = wp.tid()
+        ray = ray_type()
+        ray.origin = origins[i]
+        ray.direction = wp.normalize(directions[i])
+        ray.prim = -1
+        ray.face = -1
+        indices = media_indices(scene, wavelengths_nm[i])
+        count = int(0)
+        for step in range(out_events.shape[1]):
+            met = interact(scene, ray, indices)
+            out_directions[i, step] = ray.direction
+            out_points[i, step] = met.point
+            out_prims[i, step] = met.prim
+            count += 1
+            if met.event != EVENT_BOUNDARY:
+                out_events[i, step] = 0
+                if met.event == EVENT_DEPOSIT:
+                    out_events[i, step] = 4
+                elif met.event == EVENT_ABSORB:
+                    out_events[i, step] = 5
+                break
+            out_reflectances[i, step] = met.reflectance
+            out_events[i, step] = 1
+            ray.origin = met.point
+            ray.prim = met.prim
+            ray.face = met.face
+            if met.total == 1:
+                out_events[i, step] = 3
+                ray.direction = met.reflected
+            elif step < reflect_first:
+                out_events[i, step] = 2
+                ray.direction = met.reflected
+            else:
+                ray.direction = met.refracted
+        out_counts[i] = count
+
+    return trace_single
+
+
+def trace_ray(
+    scene: scenes.Scene,
+    origin: npt.ArrayLike,
+    direction: npt.ArrayLike,
+    wavelength_nm: float,
+    *,
+    max_interactions: int = 256,
+    reflect_first: int = 0,
+    precision: str = "float64",
+    device: str = "cpu",
+) -> RayPath:
+    """Follow one ray: it refracts where it can, and reflects where reflection is total.
+
+    Args:
+        scene: objects are enough; emitters and a camera are not needed.
+        origin: (3,) start [m].
+        direction: (3,), of any length.
+        wavelength_nm: must lie in the range of every medium of the scene.
+        max_interactions: surfaces to follow the ray through.
+        reflect_first: at this many first boundaries the reflected branch is followed instead.
+        precision: "float64" or "float32".
+        device: "cpu", or a CUDA device.
+
+    Raises:
+        spectra.WavelengthOutOfRange: a medium has no index at the wavelength.
+        SettingsError: origin or direction is not three finite numbers, or direction is zero.
+        DeviceError: the device does not exist.
+    """
+    compiled = _compiled(scene, precision, start_device(device))
+    return trace_compiled_rays(
+        compiled,
+        _three_numbers("origin", origin)[None],
+        _three_numbers("direction", direction)[None],
+        np.array([wavelength_nm], dtype=np.float64),
+        max_interactions=max_interactions,
+        reflect_first=reflect_first,
+    )[0]
+
+
+_recent: list[tuple[scenes.Scene, str, str, CompiledScene]] = []
+
+
+def _compiled(scene: scenes.Scene, precision: str, device: str) -> CompiledScene:
+    """Compile `scene`, or take the one compiled last: rays mostly come in bundles."""
+    if _recent and _recent[0][0] is scene and _recent[0][1:3] == (precision, device):
+        return _recent[0][3]
+    compiled = compile_scene(scene, precision=precision, device=device)
+    _recent[:] = [(scene, precision, device, compiled)]
+    return compiled
+
+
+def trace_compiled_rays(
+    compiled: CompiledScene,
+    origins: FloatArray,
+    directions: FloatArray,
+    wavelengths_nm: FloatArray,
+    *,
+    max_interactions: int = 256,
+    reflect_first: int = 0,
+) -> list[RayPath]:
+    """Follow many rays, (n, 3) origins [m] and directions and (n,) wavelengths; see `trace_ray`."""
+    for item in compiled.scene.objects:
+        if isinstance(item.material, scenes.Dielectric):
+            item.material.resolved().eta(wavelengths_nm)  # raises outside its range
+    structs, device, rays = compiled.structs, compiled.device, len(origins)
+    size = (rays, max_interactions)
+    local = compiled.to_local(origins)
+    points = wp.zeros(size, dtype=structs.vec3, device=device)
+    ways = wp.zeros(size, dtype=structs.vec3, device=device)
+    events = wp.zeros(size, dtype=int, device=device)
+    prims = wp.zeros(size, dtype=int, device=device)
+    reflectances = wp.zeros(size, dtype=structs.real, device=device)
+    counts = wp.zeros(rays, dtype=int, device=device)
+    wp.launch(
+        make_trace_single(compiled.precision, compiled.features),
+        dim=rays,
+        inputs=[
+            compiled.data,
+            wp.array(local, dtype=structs.vec3, device=device),
+            wp.array(directions, dtype=structs.vec3, device=device),
+            wp.array(wavelengths_nm, dtype=structs.real, device=device),
+            reflect_first,
+        ],
+        outputs=[points, ways, events, prims, reflectances, counts],
+        device=device,
+    )
+    record = _Record(
+        compiled, local, points.numpy(), ways.numpy(), events.numpy(), prims.numpy(),
+        reflectances.numpy(), counts.numpy(), wavelengths_nm,
+    )
+    return [record.path(i) for i in range(rays)]
+
+
+@dataclass(frozen=True)
+class _Record:
+    """The kernel's output on the host."""
+
+    compiled: CompiledScene
+    origins: FloatArray
+    points: npt.NDArray[Any]
+    ways: npt.NDArray[Any]
+    events: npt.NDArray[Any]
+    prims: npt.NDArray[Any]
+    reflectances: npt.NDArray[Any]
+    counts: npt.NDArray[Any]
+    wavelengths_nm: FloatArray
+
+    def path(self, i: int) -> RayPath:
+        """Ray i as a RayPath in world coordinates."""
+        n = int(self.counts[i])
+        points = np.vstack([self.origins[i][None], self.points[i, :n]]).astype(np.float64)
+        directions = self.ways[i, :n].astype(np.float64)
+        events = [_NAMES[event] for event in self.events[i, :n]]
+        if events[-1] == "escape":
+            points[-1] = self._exit_point(points[-2], directions[-1])
+        elif events[-1] not in ("deposit", "absorb"):
+            events[-1] = "limit"
+        names = [item.name for item in self.compiled.scene.objects]
+        return RayPath(
+            points=points + self.compiled.origin,
+            directions=directions,
+            events=tuple(events),
+            objects=tuple(names[prim] if prim >= 0 else "" for prim in self.prims[i, :n]),
+            reflectances=self.reflectances[i, :n].astype(np.float64),
+            wavelength_nm=float(self.wavelengths_nm[i]),
+        )
+
+    def _exit_point(self, start: FloatArray, direction: FloatArray) -> FloatArray:
+        """Where a ray leaves the sphere of the scene's bounds, twice as large for the eye."""
+        reach = 2.0 * self._bounding_radius()
+        along = float(np.dot(start, direction))
+        closest2 = float(np.dot(start, start)) - along * along
+        half_chord = np.sqrt(max(reach * reach - closest2, 0.0))
+        exit_point: FloatArray = start + max(half_chord - along, 0.5 * reach) * direction
+        return exit_point
+
+    def _bounding_radius(self) -> float:
+        """Radius about the local origin that holds every finite object [m]; 1 if there is none."""
+        reach = [
+            float(np.linalg.norm(self.compiled.to_local(centre))) + radius
+            for centre, radius in (
+                item.shape.bounding_sphere()
+                for item in self.compiled.scene.objects
+                if not isinstance(item.shape, scenes.Plane)
+            )
+        ]
+        return max(reach, default=1.0)
+
+
+def _three_numbers(name: str, value: npt.ArrayLike) -> FloatArray:
+    """`value` as (3,) finite float64, not all zero if it is a direction."""
+    vector = np.asarray(value, dtype=np.float64)
+    if vector.shape != (3,) or not np.all(np.isfinite(vector)):
+        raise SettingsError(name, value, "three finite numbers")
+    if name == "direction" and not np.any(vector):
+        raise SettingsError(name, value, "three finite numbers, not all zero")
+    return vector

@@ -1,0 +1,276 @@
+"""One step of light: find the next surface, and say what it does to the ray.
+
+Photons, camera paths and single rays all advance by `interact`, so that a test of Snell's law on
+a single ray exercises the code that makes the pictures. `geometry` says where, `optics` says
+what; they meet only here.
+
+A solid knows the medium inside it and the one outside. Two facts keep rays from slipping: a ray
+that leaves a surface excludes that surface (no epsilon), and the same boundary point is reported
+to both branches of a split.
+
+Formulas: Snell and Fresnel as cited in `sim.optics.dielectric`.
+"""
+
+import functools
+from types import SimpleNamespace
+
+import warp as wp
+
+from sim.features import Features
+from sim.geometry.flat import intersect_plane, plane_coordinates
+from sim.geometry.lens import cap_normal, intersect_cap, intersect_rim
+from sim.geometry.polyhedron import intersect_polyhedron
+from sim.geometry.sphere import intersect_sphere
+from sim.optics.dielectric import (
+    fresnel_reflectance,
+    reflect,
+    refract,
+    renormalize,
+    sin2_theta_t,
+)
+from sim.optics.dispersion import air_index, cauchy_index, sellmeier_index, tabulated_index
+from sim.scene_structs import (
+    CAUCHY,
+    DIELECTRIC,
+    LAMBERTIAN,
+    SELLMEIER,
+    TABULATED,
+    make_scene_structs,
+)
+
+__all__ = ["EVENT_ABSORB", "EVENT_BOUNDARY", "EVENT_DEPOSIT", "EVENT_ESCAPE", "make_transport"]
+
+EVENT_ESCAPE = wp.constant(0)
+"""The ray meets nothing more."""
+EVENT_BOUNDARY = wp.constant(1)
+"""A boundary between two media: the ray splits."""
+EVENT_DEPOSIT = wp.constant(2)
+"""A diffuse surface: the photon is stored, the camera path gathers."""
+EVENT_ABSORB = wp.constant(3)
+"""An absorber: the light ends here."""
+
+FRONT_FACE = wp.constant(0)
+BACK_FACE = wp.constant(1)
+RIM_FACE = wp.constant(2)
+
+
+@functools.cache
+def make_media_function(precision: str, features: Features):
+    """Device function `media_indices(scene, wavelength_nm)`: the index of every medium.
+
+    A path keeps its wavelength, so its indices are evaluated once, with only the formulas that
+    the scene's media use.
+    """
+    structs = make_scene_structs(precision)
+    real, scene_type = structs.real, structs.Scene
+    indices_type = wp.types.vector(length=features.media_count, dtype=real)
+    media_count = features.media_count
+
+    @wp.func
+    def media_indices(scene: scene_type, wavelength_nm: real):
+        wavelength_um = wavelength_nm * real(1e-3)
+        indices = indices_type()
+        for medium in range(media_count):
+            row = scene.media[medium]
+            n = real(1.0)
+            if wp.static(features.sellmeier):
+                if row.formula == SELLMEIER:
+                    n = sellmeier_index(scene.coefficients, medium, wavelength_um)
+            if wp.static(features.cauchy):
+                if row.formula == CAUCHY:
+                    n = cauchy_index(scene.coefficients, medium, wavelength_um)
+            if wp.static(features.tabulated):
+                if row.formula == TABULATED:
+                    n = tabulated_index(
+                        scene.knots_nm, scene.cubics, row.knot_first, row.knot_count,
+                        wavelength_nm,
+                    )
+            if wp.static(features.air_conversion):
+                if row.air_power > 0:
+                    n *= air_index(wavelength_um)
+                elif row.air_power < 0:
+                    n /= air_index(wavelength_um)
+            indices[medium] = n
+        return indices
+
+    return media_indices
+
+
+@functools.cache
+def make_intersect(precision: str, features: Features):
+    """Device function `intersect(scene, ray) -> Hit`, with only the shapes the scene has."""
+    structs = make_scene_structs(precision)
+    real, vec3 = structs.real, structs.vec3
+    scene_type, ray_type, hit_type = structs.Scene, structs.Ray, structs.Hit
+    lens_type = structs.Lens
+
+    @wp.func
+    def intersect_lens(lens: lens_type, ray: ray_type):
+        """Distance (−1 for none), face, and point in the lens's frame."""
+        leaving_face = int(-1)
+        if ray.prim == lens.prim:
+            leaving_face = ray.face
+        origin = lens.frame * (ray.origin - lens.centre)
+        direction = lens.frame * ray.direction
+        half = vec3(real(0.0), real(0.0), lens.half_thickness)
+        t_front = intersect_cap(
+            origin + half, direction, lens.curvature_front, lens.one_plus_conic_front,
+            lens.rho2_limit, leaving_face == FRONT_FACE,
+        )
+        t_back = intersect_cap(
+            origin - half, direction, lens.curvature_back, lens.one_plus_conic_back,
+            lens.rho2_limit, leaving_face == BACK_FACE,
+        )
+        t_rim = intersect_rim(
+            origin, direction, lens.radius, lens.rim_low, lens.rim_high, leaving_face == RIM_FACE
+        )
+        t = t_front
+        face = int(FRONT_FACE)
+        if t_back >= real(0.0) and (t < real(0.0) or t_back < t):
+            t = t_back
+            face = BACK_FACE
+        if t_rim >= real(0.0) and (t < real(0.0) or t_rim < t):
+            t = t_rim
+            face = RIM_FACE
+        return t, face, origin + direction * t
+
+    @wp.func
+    def lens_normal(lens: lens_type, face: int, point: vec3):
+        """Outward unit normal at a point of the lens in its frame, in the scene's frame."""
+        normal = vec3(point[0], point[1], real(0.0))
+        half = vec3(real(0.0), real(0.0), lens.half_thickness)
+        if face == FRONT_FACE:
+            normal = cap_normal(point + half, lens.curvature_front, lens.one_plus_conic_front)
+        elif face == BACK_FACE:
+            normal = -cap_normal(point - half, lens.curvature_back, lens.one_plus_conic_back)
+        return wp.normalize(wp.transpose(lens.frame) * normal)
+
+    @wp.func
+    def intersect(scene: scene_type, ray: ray_type):
+        hit = hit_type()
+        hit.t = real(wp.inf)
+        hit.prim = -1
+        if wp.static(features.spheres):
+            for i in range(scene.sphere_count):
+                sphere = scene.spheres[i]
+                local = ray.origin - sphere.centre
+                t = intersect_sphere(local, ray.direction, sphere.radius, ray.prim == sphere.prim)
+                if t >= real(0.0) and t < hit.t:
+                    hit.t = t
+                    hit.prim = sphere.prim
+                    hit.face = 0
+                    hit.normal = renormalize((local + ray.direction * t) / sphere.radius)
+        if wp.static(features.flats):
+            for i in range(scene.flat_count):
+                flat = scene.flats[i]
+                if ray.prim != flat.prim:
+                    local = ray.origin - flat.centre
+                    normal = flat.frame[2]
+                    t = intersect_plane(local, ray.direction, normal)
+                    if t >= real(0.0) and t < hit.t:
+                        u, v = plane_coordinates(local + ray.direction * t, flat.frame)
+                        inside = wp.abs(u) <= flat.half_u and wp.abs(v) <= flat.half_v
+                        if inside and u * u + v * v <= flat.radius2:
+                            hit.t = t
+                            hit.prim = flat.prim
+                            hit.face = 0
+                            hit.normal = normal
+        if wp.static(features.polyhedra):
+            for i in range(scene.polyhedron_count):
+                body = scene.polyhedra[i]
+                leaving_face = -1
+                if ray.prim == body.prim:
+                    leaving_face = ray.face
+                t, face = intersect_polyhedron(
+                    ray.origin - body.centre, ray.direction, scene.planes, body.first,
+                    body.count, leaving_face,
+                )
+                if t >= real(0.0) and t < hit.t:
+                    hit.t = t
+                    hit.prim = body.prim
+                    hit.face = face
+                    hit.normal = scene.planes[face].normal
+        if wp.static(features.lenses):
+            for i in range(scene.lens_count):
+                lens = scene.lenses[i]
+                t, face, point = intersect_lens(lens, ray)
+                if t >= real(0.0) and t < hit.t:
+                    hit.t = t
+                    hit.prim = lens.prim
+                    hit.face = face
+                    hit.normal = lens_normal(lens, face, point)
+        return hit
+
+    return intersect
+
+
+@functools.cache
+def make_transport(precision: str, features: Features) -> SimpleNamespace:
+    """Structs and device functions of one light step.
+
+    Returns:
+        A namespace with the structs of `make_scene_structs` and the device functions
+        `intersect(scene, ray) -> Hit`, `media_indices(scene, wavelength_nm)` and
+        `interact(scene, ray, indices) -> Interaction`.
+    """
+    structs = make_scene_structs(precision)
+    real, vec3 = structs.real, structs.vec3
+    scene_type, ray_type = structs.Scene, structs.Ray
+    interaction_type = structs.Interaction
+    intersect = make_intersect(precision, features)
+    indices_type = wp.types.vector(length=features.media_count, dtype=real)
+    media_indices = make_media_function(precision, features)
+
+    @wp.func
+    def cross_boundary(direction: vec3, normal: vec3, eta: real):
+        """Total or not, reflectance, and the two directions at a boundary of relative index η."""
+        cos_theta_i = wp.min(-wp.dot(direction, normal), real(1.0))
+        reflected = reflect(direction, normal, cos_theta_i)
+        sin2_t = sin2_theta_t(cos_theta_i, eta)
+        if sin2_t >= real(1.0):
+            return 1, real(1.0), reflected, reflected
+        cos_theta_t = wp.sqrt(real(1.0) - sin2_t)
+        r_s, r_p = fresnel_reflectance(cos_theta_i, cos_theta_t, eta)
+        refracted = refract(direction, normal, cos_theta_i, cos_theta_t, eta)
+        return 0, real(0.5) * (r_s + r_p), reflected, refracted
+
+    @wp.func
+    def interact(scene: scene_type, ray: ray_type, indices: indices_type):
+        # Structs are filled field by field: a struct assigned whole inside a branch is copied
+        # at every merge of the compiled code, which made this step four times slower.
+        hit = intersect(scene, ray)
+        met = interaction_type()
+        met.event = EVENT_ESCAPE
+        met.t = hit.t
+        met.prim = hit.prim
+        met.face = hit.face
+        if hit.prim >= 0:
+            body = scene.bodies[hit.prim]
+            normal = hit.normal
+            if wp.dot(ray.direction, normal) > real(0.0):
+                normal = -normal
+                met.side = 1
+            met.point = ray.origin + ray.direction * hit.t
+            met.normal = normal
+            met.event = EVENT_ABSORB
+            if body.material == LAMBERTIAN:
+                met.event = EVENT_DEPOSIT
+            elif body.material == DIELECTRIC:
+                met.event = EVENT_BOUNDARY
+                met.dispersive = body.dispersive
+                eta = indices[body.medium_outside] / indices[body.medium_inside]
+                if met.side == 1:
+                    eta = indices[body.medium_inside] / indices[body.medium_outside]
+                total, reflectance, reflected, refracted = cross_boundary(
+                    ray.direction, normal, eta
+                )
+                met.eta = eta
+                met.total = total
+                met.reflectance = reflectance
+                met.reflected = reflected
+                met.refracted = refracted
+        return met
+
+    return SimpleNamespace(
+        **vars(structs), intersect=intersect, media_indices=media_indices, interact=interact
+    )

@@ -1,0 +1,208 @@
+"""The command `nephroid`: what it prints, how it fails, and that it fails in one message."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import scenes
+import spectra
+from sim.cli import main
+from sim.version import VERSION
+
+
+def fails(capfd, arguments, *parts):
+    """Hold a command to exit status 2 and one message on stderr that has all of `parts`."""
+    assert main(arguments) == 2
+    captured = capfd.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("nephroid: error: ")
+    assert captured.err.count("nephroid: error:") == 1
+    assert "Traceback" not in captured.err
+    for part in parts:
+        assert part in captured.err
+
+
+def test_help_lists_every_command(capfd):
+    assert main(["--help"]) == 0
+    shown = capfd.readouterr().out
+    for command in ("render", "trace", "scenes", "glass", "info", "schema"):
+        assert f"\n    {command} " in shown
+
+
+def test_version(capfd):
+    assert main(["--version"]) == 0
+    assert capfd.readouterr().out == f"nephroid {VERSION}\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [
+        ([], ["COMMAND", "see 'nephroid --help'"]),
+        (["rendr"], ["invalid choice: 'rendr'", "render"]),
+        (["render"], ["scene", "see 'nephroid render --help'"]),
+        (["render", "prism", "--photons", "many"], ["--photons", "whole number", "'many'"]),
+        (["render", "prism", "--photons", "1.5"], ["--photons", "'1.5'"]),
+        (["render", "prism", "--photons", "inf"], ["--photons", "'inf'"]),
+        (["render", "prism", "--precision", "half"], ["--precision", "float32", "float64"]),
+        (["render", "prism", "--exposure", "nan"], ["--exposure", "'nan'"]),
+        (["render", "prism", "-o", "out.png"], ["'out.png' does not end in .exr"]),
+        (["render", "prism", "--png", "out.exr"], ["'out.exr' does not end in .png"]),
+        (["trace", "prism", "-o", "out.pdf"], ["'out.pdf' does not end in .png or .svg"]),
+        (["trace", "prism", "--wavelengths", "red"], ["--wavelengths", "'red'"]),
+        (["render", "prism", "--frobnicate"], ["--frobnicate"]),
+    ],
+)
+def test_bad_arguments(capfd, arguments, parts):
+    fails(capfd, arguments, *parts)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [
+        (["--photons", "0"], ["photons: 0", "allowed"]),
+        (["--photons", "-5"], ["photons: -5"]),
+        (["--passes", "0"], ["passes: 0"]),
+        (["--radius", "nan"], ["radius: nan"]),
+        (["--threads", "0"], ["threads: 0"]),
+        (["--device", "gpu"], ["device: 'gpu'", "cuda:0"]),
+        (["-o", "missing/out.exr"], ["'missing/out.exr'", "there is no folder"]),
+        (["--png", "missing/out.png"], ["'missing/out.png'", "there is no folder"]),
+        (["-o", "folder.exr"], ["'folder.exr'", "it is a folder"]),
+    ],
+)
+def test_bad_settings_and_outputs_are_told_before_rendering(
+    capfd, tmp_path, monkeypatch, arguments, parts
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.exr").mkdir()
+    fails(capfd, ["render", "prism", *arguments], *parts)
+    assert os.listdir(tmp_path) == ["folder.exr"]
+
+
+@pytest.mark.parametrize("command", ["render", "trace"])
+@pytest.mark.parametrize(
+    ("scene", "parts"),
+    [
+        ("prsm", ["unknown scene", "prism"]),
+        ("no_such.toml", ["no_such.toml", "no such file"]),
+        ("bad.toml", ["bad.toml", "raduis", "radius", "BK9", "N-BK7"]),
+        ("binary.toml", ["binary.toml"]),
+        ("folder.toml", ["folder.toml"]),
+    ],
+)
+def test_bad_scenes(capfd, tmp_path, monkeypatch, command, scene, parts):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    (tmp_path / "folder.toml").mkdir()
+    (tmp_path / "bad.toml").write_text(
+        '[[objects]]\nshape = {type = "sphere", position = [0, 0, 0], raduis = 1}\n'
+        'material = {type = "dielectric", medium = "BK9"}\n'
+    )
+    fails(capfd, [command, scene], *parts)
+    assert sorted(os.listdir(tmp_path)) == ["bad.toml", "binary.toml", "folder.toml"]
+
+
+def test_scenes_lists_the_gallery(capfd):
+    assert main(["scenes"]) == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(scenes.gallery())
+    for name, line in zip(scenes.gallery(), lines, strict=True):
+        assert line.endswith(scenes.load(name).title)
+
+
+def test_schema_is_json(capfd):
+    assert main(["schema"]) == 0
+    assert json.loads(capfd.readouterr().out) == scenes.schema()
+
+
+@pytest.mark.parametrize("name", spectra.glasses())
+def test_glass_tells_what_is_known(capfd, name):
+    assert main(["glass", name]) == 0
+    shown = capfd.readouterr().out
+    medium = spectra.glass(name)
+    for text in (
+        name, medium.source, medium.relative_to, f"{medium.n_d:.6f}", f"{medium.abbe_number:.2f}"
+    ):  # fmt: skip
+        assert text in shown
+
+
+def test_glass_plots(capfd, tmp_path):
+    assert main(["glass", "SF11", "-o", str(tmp_path / "sf11.png")]) == 0
+    with Image.open(tmp_path / "sf11.png") as image:
+        assert np.asarray(image).std() > 0
+
+
+def test_an_unknown_glass_is_told_with_the_nearest(capfd):
+    fails(capfd, ["glass", "BK9"], "unknown glass 'BK9'", "N-BK7")
+
+
+def test_info_tells_what_a_file_holds(capfd, tmp_path, synthetic_picture):
+    path = tmp_path / "out.exr"
+    synthetic_picture.save_exr(path)
+    assert main(["info", str(path)]) == 0
+    shown = capfd.readouterr().out
+    for text in (
+        "12 × 8 pixels", "4, centred on 430 to 670 nm", "W m^-2 sr^-1 nm^-1", VERSION,
+        "CIE 1931 2 degree", "deposited         0.7 W", "photons           2000", "max_interactions  256",
+    ):  # fmt: skip
+        assert text in shown
+
+
+def test_info_gives_the_scene_back(capfd, tmp_path, synthetic_picture):
+    path = tmp_path / "out.exr"
+    synthetic_picture.save_exr(path)
+    assert main(["info", "--scene", str(path)]) == 0
+    assert capfd.readouterr().out == synthetic_picture.scene.source_text
+
+
+def test_info_on_bad_files(capfd, tmp_path, synthetic_picture):
+    path = tmp_path / "out.exr"
+    fails(capfd, ["info", str(path)], str(path), "No such file")
+    fails(capfd, ["info", str(tmp_path)], str(tmp_path), "directory")
+    path.write_text("not an EXR")
+    fails(capfd, ["info", str(path)], str(path), "not an OpenEXR file")
+    synthetic_picture.save_exr(path)
+    path.write_bytes(path.read_bytes()[:-200])
+    fails(capfd, ["info", str(path)], str(path), "damaged or cut off")
+
+
+def test_a_bug_is_not_passed_off_as_bad_input(monkeypatch):
+    def broken():
+        raise ValueError("a bug")
+
+    monkeypatch.setattr(scenes, "schema", broken)
+    with pytest.raises(ValueError, match="a bug"):
+        main(["schema"])
+
+
+def test_running_out_of_memory_is_told(capfd, monkeypatch):
+    def greedy():
+        raise MemoryError("Unable to allocate 8 TiB")
+
+    monkeypatch.setattr(scenes, "schema", greedy)
+    fails(capfd, ["schema"], "not enough memory: Unable to allocate 8 TiB")
+
+
+def test_ctrl_c_is_one_line_and_status_130(capfd, monkeypatch):
+    def interrupted():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(scenes, "schema", interrupted)
+    assert main(["schema"]) == 130
+    assert capfd.readouterr() == ("", "nephroid: stopped\n")
+
+
+def test_a_reader_that_stops_reading_is_no_error():
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    command = [sys.executable, "-m", "sim.cli", "schema"]
+    with subprocess.Popen(
+        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 0
