@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from sim.commands import glass, info, render, scenes, schema, trace
+from sim.native_output import end_silence
 from sim.version import VERSION
 
 __all__ = ["main", "parse_arguments", "run_from_shell"]
@@ -55,6 +56,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SystemExit as leaving:  # From argparse: --help, --version or a bad argument.
         return leaving.code if isinstance(leaving.code, int) else _SUCCESS
     except KeyboardInterrupt:
+        end_silence()
         print("nephroid: stopped", file=sys.stderr)
         return _STOPPED
     except BrokenPipeError:

@@ -8,7 +8,10 @@ import os
 import sys
 from collections.abc import Iterator
 
-__all__ = ["silenced_native_output"]
+__all__ = ["end_silence", "silenced_native_output"]
+
+# What is silenced now: descriptors, each with a copy of what it was.
+_silenced: list[tuple[int, int]] = []
 
 
 @contextlib.contextmanager
@@ -21,18 +24,30 @@ def silenced_native_output() -> Iterator[None]:
     """
     sys.stdout.flush()
     sys.stderr.flush()
-    saved: list[tuple[int, int]] = []
+    before = len(_silenced)
     discard = os.open(os.devnull, os.O_WRONLY)
     try:
         for descriptor in (1, 2):
             with contextlib.suppress(OSError):  # A closed one prints nothing anyway.
-                saved.append((descriptor, os.dup(descriptor)))
+                _silenced.append((descriptor, os.dup(descriptor)))
                 os.dup2(discard, descriptor)
         nowhere = io.StringIO()
         with contextlib.redirect_stdout(nowhere), contextlib.redirect_stderr(nowhere):
             yield
     finally:
-        for descriptor, original in saved:
+        while len(_silenced) > before:
+            descriptor, original = _silenced.pop()
             os.dup2(original, descriptor)
             os.close(original)
         os.close(discard)
+
+
+def end_silence() -> None:
+    """Let this process speak again, although another thread is in a silenced block.
+
+    For last words after Ctrl-C: that thread may never come to the end of its block.
+    """
+    if _silenced:
+        for descriptor, original in reversed(_silenced):
+            os.dup2(original, descriptor)
+        sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__

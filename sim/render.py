@@ -15,6 +15,7 @@ Reference:
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -29,6 +30,7 @@ from sim.image.picture import Picture
 from sim.photons.energy import EnergyBooks
 from sim.photons.lamps import Lamps, compile_lamps
 from sim.photons.photon_map import build_photon_map
+from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import Progress, ProgressCallback
 from sim.scene_data import CompiledScene, compile_scene
@@ -113,13 +115,16 @@ def render(
         compiled = compile_scene(scene, precision=plan.precision, device=device)
         edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
         lamps = compile_lamps(compiled, edges_nm, plan.photons)
-        film = create_film(scene.film.height, scene.film.width, edges_nm, device)
+        receivers = compile_receivers(compiled, lamps, edges_nm)
+        film = create_film(
+            scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device
+        )
         radius = gather_radius(compiled, plan)
     books = []
     for pass_index in range(plan.passes):
         watch.pass_index = pass_index
         pass_radius = radius * radius_shrinkage(pass_index, plan.alpha)
-        books.append(_render_pass(compiled, lamps, film, plan, pass_radius, watch))
+        books.append(_render_pass(compiled, lamps, receivers, film, plan, pass_radius, watch))
     return Picture(
         spectral_radiance=film.radiance(),
         standard_error=film.standard_error(),
@@ -160,6 +165,7 @@ def gather_radius(compiled: CompiledScene, settings: ResolvedSettings) -> float:
 def _render_pass(
     compiled: CompiledScene,
     lamps: Lamps,
+    receivers: Any,
     film: Film,
     plan: ResolvedSettings,
     radius: float,
@@ -178,7 +184,7 @@ def _render_pass(
         )
     with watch.timing("build photon map"):
         photon_map = build_photon_map(
-            compiled, batch, film.edges_nm, radius, threads=plan.threads
+            compiled, batch, receivers, radius, threads=plan.threads
         )
     with watch.timing("gather"):
         scene = compiled.scene
@@ -188,6 +194,7 @@ def _render_pass(
             compiled,
             compile_camera(compiled, scene.camera, scene.film),
             photon_map,
+            receivers,
             seed=plan.seed,
             pass_index=watch.pass_index,
             threads=plan.threads,

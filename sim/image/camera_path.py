@@ -25,7 +25,7 @@ from sim.features import Features
 from sim.image.camera import make_camera_functions, make_camera_struct
 from sim.image.gather import make_gather
 from sim.photons.photon_map import make_map_structs
-from sim.photons.photon_structs import surface_key
+from sim.photons.receivers import make_receiver_structs
 from sim.sampling.counter import hash64, to_unit
 from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
 
@@ -61,20 +61,20 @@ def make_film_struct() -> Any:
 
 @functools.cache
 def make_render_camera(precision: str, features: Features) -> Any:
-    """Kernel `render_camera(start, scene, camera, photons, bands, film)`."""
+    """Kernel `render_camera(start, scene, camera, photons, receivers, film)`."""
     transport = make_transport(precision, features)
     real, interact = transport.real, transport.interact
     media_indices = transport.media_indices
     scene_type, ray_type = transport.Scene, transport.Ray
-    map_structs = make_map_structs(precision)
-    map_type, bands_type = map_structs.Map, map_structs.Bands
+    map_type = make_map_structs(precision).Map
+    receivers_type = make_receiver_structs(precision).Receivers
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
     look = make_camera_functions(precision)
     gather = make_gather(precision, features)
 
     @wp.func
     def follow(
-        scene: scene_type, photons: map_type, bands: bands_type, camera_ray: ray_type, band: int,
+        scene: scene_type, photons: map_type, receivers: receivers_type, camera_ray: ray_type, band: int,
         wavelength_nm: real, key: wp.uint64, sample: wp.array2d(dtype=wp.float64), row: int,
     ):
         """Add one path's radiance to `sample[row]`; 1 if a branch met a dispersive surface."""
@@ -144,8 +144,8 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 alive = False
                 if met.event == EVENT_DEPOSIT and (band < 0 or dispersed == 1):
                     gather(
-                        scene, photons, met, surface_key(met.prim, met.face, met.side), band,
-                        throughput / bands.width_nm, sample, row,
+                        scene, photons, receivers, met, band,
+                        throughput / receivers.band_width_nm, sample, row,
                     )
         return met_dispersive
 
@@ -155,11 +155,11 @@ def make_render_camera(precision: str, features: Features) -> Any:
         scene: scene_type,
         camera: camera_type,
         photons: map_type,
-        bands: bands_type,
+        receivers: receivers_type,
         film: film_type,
     ):
         pixel = start + wp.tid()
-        for band in range(bands.count):
+        for band in range(receivers.bands + receivers.lamps):
             film.sample[pixel, band] = wp.float64(0.0)
         # R2 points over the passes, shifted at random for each pixel: every pixel's samples
         # are spread, and neighbours share no pattern.
@@ -182,18 +182,18 @@ def make_render_camera(precision: str, features: Features) -> Any:
         ray.face = -1
         inside_band = z - wp.floor(z)
         key = hash64(film.key + wp.uint64(1), shift * wp.uint64(65536) + wp.uint64(film.pass_index))
-        wavelength_nm = bands.first_edge_nm + real(0.5) * bands.width_nm * real(bands.count)
+        wavelength_nm = receivers.first_edge_nm + real(0.5) * receivers.band_width_nm * real(receivers.bands)
         dispersed = follow(
-            scene, photons, bands, ray, -1, wavelength_nm, key, film.sample, pixel
+            scene, photons, receivers, ray, -1, wavelength_nm, key, film.sample, pixel
         )
         if dispersed == 1:
-            for band in range(bands.count):
-                wavelength_nm = bands.first_edge_nm + bands.width_nm * (real(band) + inside_band)
+            for band in range(receivers.bands):
+                wavelength_nm = receivers.first_edge_nm + receivers.band_width_nm * (real(band) + inside_band)
                 follow(
-                    scene, photons, bands, ray, band, wavelength_nm, key, film.sample, pixel
+                    scene, photons, receivers, ray, band, wavelength_nm, key, film.sample, pixel
                 )
         weight = wp.float64(1.0) / wp.float64(film.passes_before + 1)
-        for band in range(bands.count):
+        for band in range(receivers.bands):
             value = film.sample[pixel, band]
             delta = value - film.mean[pixel, band]
             mean = film.mean[pixel, band] + delta * weight

@@ -10,7 +10,7 @@ import warp as wp
 
 from sim.image.camera_path import make_film_struct, make_render_camera
 from sim.launch import cut_ranges, launch_ranges
-from sim.photons.photon_map import PhotonMap, bands_struct
+from sim.photons.photon_map import PhotonMap
 from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 
@@ -64,11 +64,13 @@ class Film:
         return error
 
 
-def create_film(height: int, width: int, edges_nm: FloatArray, device: str) -> Film:
-    """An unexposed film."""
+def create_film(
+    height: int, width: int, edges_nm: FloatArray, lamps: int, device: str
+) -> Film:
+    """An unexposed film, with scratch for a sum a lamp beside those of the bands."""
     data = make_film_struct()()
     size = (height * width, len(edges_nm) - 1)
-    data.sample = wp.zeros(size, dtype=wp.float64, device=device)
+    data.sample = wp.zeros((size[0], size[1] + lamps), dtype=wp.float64, device=device)
     data.mean = wp.zeros(size, dtype=wp.float64, device=device)
     data.squares = wp.zeros(size, dtype=wp.float64, device=device)
     return Film(height, width, np.asarray(edges_nm, dtype=np.float64), data)
@@ -79,6 +81,7 @@ def expose(
     compiled: CompiledScene,
     camera: Any,
     photon_map: PhotonMap,
+    receivers: Any,
     *,
     seed: int,
     pass_index: int,
@@ -92,6 +95,7 @@ def expose(
         compiled: the scene.
         camera: the device-side Camera struct.
         photon_map: this pass's photons.
+        receivers: the device-side Receivers struct.
         seed: the run's seed.
         pass_index: decides the position within the pixels and the bands.
         threads: CPU threads.
@@ -101,8 +105,7 @@ def expose(
     data.pass_index = pass_index
     data.passes_before = film.passes
     data.key = fold_key(seed, _CAMERA_KEY)
-    bands = bands_struct(compiled.precision, film.edges_nm)
-    inputs = [compiled.data, camera, photon_map.data, bands, data]
+    inputs = [compiled.data, camera, photon_map.data, receivers, data]
     launch_ranges(
         make_render_camera(compiled.precision, compiled.features),
         cut_ranges(film.height * film.width, _RANGE_SIZE),

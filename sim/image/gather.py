@@ -1,7 +1,8 @@
 """Radiance from the photon map at a point of a diffuse receiver.
 
-The reflected radiance of a band is ``L = Σ K(|x − xₚ|) ρ Φₚ / (π Δλ)`` over the photons on the
-same side of the same face within the radius, with the kernel of Epanechnikov (1969),
+The reflected radiance of a band is ``L = Σ K(|x − xₚ|) ρ Φₚ / (π Δλ)`` over the band's photons on
+the same side of the same face within the radius, and of photons that no dispersion has touched
+each band takes its share, with the kernel of Epanechnikov (1969),
 ``K(d) = 2/(π r²) (1 − d²/r²)``. Where the disc overhangs the receiver's edge, K is divided by its
 integral over the part that does not.
 
@@ -19,6 +20,8 @@ from sim.features import Features
 from sim.geometry.extent import distance_to_circle, distance_to_planes, distance_to_sides
 from sim.geometry.flat import plane_coordinates
 from sim.photons.photon_map import make_map_structs
+from sim.photons.photon_structs import surface_key
+from sim.photons.receivers import make_receiver_structs
 from sim.precision import precision_types
 from sim.sampling.directions import to_world
 from sim.scene_structs import SHAPE_FLAT, SHAPE_POLYHEDRON, make_scene_structs
@@ -101,43 +104,72 @@ def make_kernel_integral(precision: str, features: Features) -> object:
 
 @functools.cache
 def make_gather(precision: str, features: Features) -> object:
-    """Device function `gather(scene, map, met, surface, band, scale, out, row)`.
+    """Device function `gather(scene, photons, receivers, met, band, scale, sums, row)`.
 
-    It adds ``scale · Σ K w`` of each photon to `out[row, its band]`; `band` −1 means all bands.
+    It adds `scale` times the reflected radiance, times the bands' width, to the bands of
+    `sums[row]`: to all of them where `band` is −1, else to that one. The columns behind the
+    bands, one a lamp, are scratch and zero before and after.
     """
     real = precision_types(precision).real
     structs = make_scene_structs(precision)
     scene_type, interaction_type = structs.Scene, structs.Interaction
     map_type = make_map_structs(precision).Map
+    receivers_type = make_receiver_structs(precision).Receivers
     kernel_integral = make_kernel_integral(precision, features)
 
     @wp.func
-    def gather(
-        scene: scene_type,
-        photons: map_type,
-        met: interaction_type,
-        surface: int,
-        band: int,
-        scale: real,
-        out: wp.array2d(dtype=wp.float64),
-        row: int,
+    def sum_group(photons: map_type, met: interaction_type, surface: int, group: int):
+        """Σ (1 − d²/r²) w of one group's photons."""
+        inv_radius2 = real(1.0) / (photons.radius * photons.radius)
+        query = wp.hash_grid_query(photons.grid, met.point, photons.radius, group)
+        candidate = int(0)
+        total = real(0.0)
+        while wp.hash_grid_query_next(query, candidate):
+            offset = photons.position[candidate] - met.point
+            x = wp.dot(offset, offset) * inv_radius2
+            if x < real(1.0) and photons.surface[candidate] == surface:
+                total += (real(1.0) - x) * photons.weight[candidate]
+        return total
+
+    @wp.func
+    def add_groups(
+        photons: map_type, met: interaction_type, surface: int, peak: real,
+        sums: wp.array2d(dtype=wp.float64), row: int,
     ):
-        radius = photons.radius
-        query = wp.hash_grid_query(photons.grid, met.point, radius)
-        if band >= 0:
-            query = wp.hash_grid_query(photons.grid, met.point, radius, band)
-        inv_radius2 = real(1.0) / (radius * radius)
-        peak = scale * real(2.0) / real(PI) * inv_radius2
-        found = int(0)
+        """Add `peak` (1 − d²/r²) w of every photon to its group's column."""
+        inv_radius2 = real(1.0) / (photons.radius * photons.radius)
+        query = wp.hash_grid_query(photons.grid, met.point, photons.radius)
         candidate = int(0)
         while wp.hash_grid_query_next(query, candidate):
             offset = photons.position[candidate] - met.point
             x = wp.dot(offset, offset) * inv_radius2
             if x < real(1.0) and photons.surface[candidate] == surface:
-                if found == 0:
-                    found = 1
-                    peak /= kernel_integral(scene, met, radius)
                 value = peak * (real(1.0) - x) * photons.weight[candidate]
-                out[row, photons.band[candidate]] += wp.float64(value)
+                sums[row, photons.group[candidate]] += wp.float64(value)
+
+    @wp.func
+    def gather(
+        scene: scene_type, photons: map_type, receivers: receivers_type, met: interaction_type,
+        band: int, scale: real, sums: wp.array2d(dtype=wp.float64), row: int,
+    ):
+        bands = receivers.bands
+        surface = surface_key(met.prim, met.face, met.side)
+        inside = kernel_integral(scene, met, photons.radius)
+        peak = scale * real(2.0) / (real(PI) * photons.radius * photons.radius * inside)
+        if band < 0:
+            add_groups(photons, met, surface, peak, sums, row)
+        else:
+            sums[row, band] += wp.float64(peak * sum_group(photons, met, surface, band))
+        for lamp in range(receivers.lamps):
+            if band < 0:
+                total = sums[row, bands + lamp]
+                sums[row, bands + lamp] = wp.float64(0.0)
+                if total > wp.float64(0.0):
+                    for b in range(bands):
+                        share = wp.float64(receivers.spread[lamp, met.prim, b])
+                        sums[row, b] += total * share
+            else:
+                one = peak * sum_group(photons, met, surface, bands + lamp)
+                sums[row, band] += wp.float64(one * receivers.spread[lamp, met.prim, band])
 
     return gather

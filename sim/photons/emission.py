@@ -76,34 +76,51 @@ def make_density_functions(precision: str) -> SimpleNamespace:
         return sin2 / (real(2.0) * (real(1.0) + wp.sqrt(real(1.0) - sin2)))
 
     @wp.func
+    def area_density(emitter: emitter_type, target: target_type, origin: vec3, direction: vec3,
+                     drawn: bool):
+        """Density of a uniform point of the rectangle, seen from `origin` along `direction`."""
+        offset = target.centre - origin
+        normal = target.frame[2]
+        approach = wp.dot(direction, normal)
+        if approach == real(0.0):
+            return real(0.0)
+        t = wp.dot(offset, normal) / approach
+        if t <= real(0.0):
+            return real(0.0)
+        local = target.frame * (direction * t - offset)
+        outside = wp.abs(local[0]) > target.half_u or wp.abs(local[1]) > target.half_v
+        if outside and not drawn:
+            return real(0.0)
+        density = t * t / (real(4.0) * target.half_u * target.half_v * wp.abs(approach))
+        if emitter.kind == SPHERE_LAMP:
+            # The lamp's point was drawn with the cosine about the way to the target's point,
+            # where the lamp's own radiation goes with the cosine of the direction.
+            outward = origin - emitter.centre
+            way = wp.normalize(origin + direction * t - emitter.centre)
+            density *= wp.max(wp.dot(outward, way), real(0.0)) / wp.dot(outward, direction)
+        return density
+
+    @wp.func
     def target_density(
         emitter: emitter_type, target: target_type, origin: vec3, direction: vec3, drawn: bool
     ):
-        """Density with which `target` draws `direction` from `origin`.
+        """Density with which `target` draws `direction`, relative to the lamp's position.
 
+        A spherical lamp's lines are counted per dω cosθ dA/(πR²); any other lamp's per dω dA/A.
         A direction that this very target has `drawn` is inside it, whatever rounding says.
         """
         if target.kind == AIM_CONE:
-            sin2_half = cone_of(target, origin)
-            if sin2_half < real(1.0):
-                chord = direction - wp.normalize(target.centre - origin)
-                if not drawn and wp.dot(chord, chord) > real(4.0) * sin2_half:
+            anchor = origin
+            if emitter.kind == SPHERE_LAMP:
+                anchor = emitter.centre
+            sin2_half = cone_of(target, anchor)
+            if sin2_half < real(1.0) and not drawn:
+                chord = direction - wp.normalize(target.centre - anchor)
+                if wp.dot(chord, chord) > real(4.0) * sin2_half:
                     return real(0.0)
             return real(1.0) / cone_solid_angle(sin2_half)
         if target.kind == AIM_AREA:
-            offset = target.centre - origin
-            normal = target.frame[2]
-            approach = wp.dot(direction, normal)
-            if approach == real(0.0):
-                return real(0.0)
-            t = wp.dot(offset, normal) / approach
-            if t <= real(0.0):
-                return real(0.0)
-            local = target.frame * (direction * t - offset)
-            outside = wp.abs(local[0]) > target.half_u or wp.abs(local[1]) > target.half_v
-            if outside and not drawn:
-                return real(0.0)
-            return t * t / (real(4.0) * target.half_u * target.half_v * wp.abs(approach))
+            return area_density(emitter, target, origin, direction, drawn)
         return own_density(emitter, direction)
 
     return SimpleNamespace(
@@ -160,12 +177,6 @@ def make_direction_function(precision: str) -> object:
             if sin2_half >= real(1.0):
                 return vec3(x, y, z)
             return to_world(x, y, z, wp.normalize(target.centre - origin))
-        if target.kind == AIM_AREA:
-            s = (u0 + u0 - real(1.0)) * target.half_u
-            t = (u1 + u1 - real(1.0)) * target.half_v
-            return wp.normalize(
-                target.centre + target.frame[0] * s + target.frame[1] * t - origin
-            )
         if emitter.kind == RECTANGLE_LAMP:
             x, y, z = sample_cosine_hemisphere(u0, u1)
             return to_world(x, y, z, axis)
@@ -176,6 +187,48 @@ def make_direction_function(precision: str) -> object:
         return vec3(x, y, z)
 
     return sample_direction
+
+
+@functools.cache
+def make_line_function(precision: str) -> object:
+    """Device function `sample_line(emitter, target, u0, u1, u3, u4)`: (origin, direction).
+
+    The first two numbers choose what is aimed at, the last two the point of the lamp. Points of
+    a receiver are drawn before the lamp's, so that photons land as evenly as the numbers are.
+    """
+    structs = make_lamp_structs(precision)
+    real, vec3 = structs.real, structs.vec3
+    emitter_type, target_type = structs.Emitter, structs.Target
+    sample_direction = make_direction_function(precision)
+
+    @wp.func
+    def point_of_sphere(emitter: emitter_type, way: vec3, u3: real, u4: real):
+        """A point of the lamp with the cosine about `way`: a uniform disk, lifted."""
+        x, y = sample_disk(u3, u4)
+        depth = wp.sqrt(wp.max(real(1.0) - x * x - y * y, real(0.0)))
+        return emitter.centre + to_world(x, y, depth, way) * emitter.radius
+
+    @wp.func
+    def sample_line(
+        emitter: emitter_type, target: target_type, u0: real, u1: real, u3: real, u4: real
+    ):
+        origin = emitter.centre
+        if emitter.kind == RECTANGLE_LAMP:
+            origin += emitter.frame[0] * ((u3 + u3 - real(1.0)) * emitter.half_u)
+            origin += emitter.frame[1] * ((u4 + u4 - real(1.0)) * emitter.half_v)
+        if target.kind == AIM_AREA:
+            point = target.centre + target.frame[0] * ((u0 + u0 - real(1.0)) * target.half_u)
+            point += target.frame[1] * ((u1 + u1 - real(1.0)) * target.half_v)
+            if emitter.kind == SPHERE_LAMP:
+                way = wp.normalize(point - emitter.centre)
+                origin = point_of_sphere(emitter, way, u3, u4)
+            return origin, wp.normalize(point - origin)
+        direction = sample_direction(emitter, target, origin, u0, u1)
+        if emitter.kind == SPHERE_LAMP:
+            origin = point_of_sphere(emitter, direction, u3, u4)
+        return origin, direction
+
+    return sample_line
 
 
 @functools.cache
@@ -193,6 +246,7 @@ def make_emission(precision: str) -> object:
     own_density, target_density = densities.own_density, densities.target_density
     sample_wavelength = make_wavelength_function(precision)
     sample_direction = make_direction_function(precision)
+    sample_line = make_line_function(precision)
     sobol_uniform = make_sobol_uniform(precision)
 
     @wp.func
@@ -222,7 +276,6 @@ def make_emission(precision: str) -> object:
         ray = ray_type()
         ray.prim = -1
         ray.face = -1
-        origin = emitter.centre
         wavelength_nm = sample_wavelength(lamps, emitter, u2)
         if emitter.kind == BEAM:
             # A beam aims itself: its profile gets the best two dimensions.
@@ -231,33 +284,26 @@ def make_emission(precision: str) -> object:
             else:
                 x = u0 + u0 - real(1.0)
                 y = u1 + u1 - real(1.0)
-            origin += emitter.frame[0] * (x * emitter.half_u)
-            origin += emitter.frame[1] * (y * emitter.half_v)
-            ray.origin = origin
-            ray.direction = sample_direction(emitter, target, origin, u3, u4)
+            ray.origin = emitter.centre + emitter.frame[0] * (x * emitter.half_u)
+            ray.origin += emitter.frame[1] * (y * emitter.half_v)
+            ray.direction = sample_direction(emitter, target, ray.origin, u3, u4)
             return ray, wavelength_nm, emitter.flux / target.photons
 
-        if emitter.kind == RECTANGLE_LAMP:
-            origin += emitter.frame[0] * ((u3 + u3 - real(1.0)) * emitter.half_u)
-            origin += emitter.frame[1] * ((u4 + u4 - real(1.0)) * emitter.half_v)
-        direction = sample_direction(emitter, target, origin, u0, u1)
-        density = real(0.0)
-        first = emitter.first_target
-        for other in range(first, first + emitter.target_count):
-            chosen = lamps.targets[other]
-            density += chosen.photons * target_density(
-                emitter, chosen, origin, direction, other == target_row
-            )
+        origin, direction = sample_line(emitter, target, u0, u1, u3, u4)
         flux = real(0.0)
         own = own_density(emitter, direction)
-        if own > real(0.0):
-            flux = emitter.flux * own / density
         if emitter.kind == SPHERE_LAMP:
-            # A Lambertian sphere seen from afar is a uniform disk: dA cosθ = dA⊥.
-            x, y = sample_disk(u3, u4)
-            depth = wp.sqrt(wp.max(real(1.0) - x * x - y * y, real(0.0)))
-            offset = to_world(x, y, depth, direction)
-            origin += offset * emitter.radius
+            if wp.dot(origin - emitter.centre, direction) <= real(0.0):
+                own = real(0.0)
+        if own > real(0.0):
+            density = real(0.0)
+            first = emitter.first_target
+            for other in range(first, first + emitter.target_count):
+                chosen = lamps.targets[other]
+                density += chosen.photons * target_density(
+                    emitter, chosen, origin, direction, other == target_row
+                )
+            flux = emitter.flux * own / density
         ray.origin = origin
         ray.direction = direction
         return ray, wavelength_nm, flux

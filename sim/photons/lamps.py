@@ -52,11 +52,13 @@ class Lamps:
         data: the device-side Lamps struct.
         streams: what one pass emits; their photon counts add up to the pass's photons.
         flux: radiant flux inside the film's wavelengths, all lamps together [W].
+        spectra: of each emitter on the device, inside the film's wavelengths.
     """
 
     data: Any
     streams: tuple[Stream, ...]
     flux: float
+    spectra: tuple[EmissionSpectrum, ...]
 
     def seed(self, device: str, seed: int, pass_index: int) -> None:
         """Give every stream its own scramble for this pass."""
@@ -79,11 +81,13 @@ def compile_lamps(
     targets: list[tuple[Any, ...]] = []
     segments: list[tuple[Any, ...]] = []
     streams: list[Stream] = []
+    shining: list[EmissionSpectrum] = []
     spectra = [_film_part(emitter, edges_nm) for emitter in scene.emitters]
     counts = _share(photons, [0.5 / len(spectra) + 0.5 * f for f in _fractions(spectra)])
     for row, (emitter, (spectrum, flux)) in enumerate(zip(scene.emitters, spectra, strict=True)):
         if spectrum is None or counts[row] == 0:
             continue
+        shining.append(spectrum)
         aims = _find_targets(compiled, emitter)
         pieces = _segments(spectrum)
         shares = _share(counts[row], [share for share, _ in aims])
@@ -100,7 +104,8 @@ def compile_lamps(
     data.targets = struct_array(structs.Target, targets, compiled.device)
     data.segments = struct_array(structs.Segment, segments, compiled.device)
     data.sobol = wp.array(sobol_tables(), dtype=wp.uint32, device=compiled.device)
-    return Lamps(data, tuple(streams), float(sum(flux for _, flux in spectra)))
+    flux = float(sum(flux for _, flux in spectra))
+    return Lamps(data, tuple(streams), flux, tuple(shining))
 
 
 def _film_part(
@@ -175,7 +180,7 @@ def _find_targets(compiled: CompiledScene, emitter: Any) -> list[tuple[float, tu
     base = (int(AIM_BASE), np.zeros(3), np.eye(3), 0.0, 0.0, 0.0)
     if isinstance(emitter, scenes.Beam):
         return [(1.0, base)]
-    # A spherical lamp draws directions from its centre: what it can hit is larger by its radius.
+    # A spherical lamp draws cones from its centre: what its rays can hit is larger by its radius.
     margin = emitter.radius if isinstance(emitter, scenes.SphereLamp) else 0.0
     specular, receivers = [], []
     for item in compiled.scene.objects:
@@ -196,7 +201,7 @@ def _aim_at(compiled: CompiledScene, shape: Any, margin: float) -> tuple[Any, ..
     if isinstance(shape, scenes.Plane):
         return None
     if isinstance(shape, scenes.Rectangle):
-        half_u, half_v = 0.5 * shape.size[0] + margin, 0.5 * shape.size[1] + margin
+        half_u, half_v = 0.5 * shape.size[0], 0.5 * shape.size[1]
         centre = compiled.to_local(shape.position)
         return int(AIM_AREA), centre, np.stack(shape.frame()), half_u, half_v, 0.0
     centre, radius = shape.bounding_sphere()

@@ -13,7 +13,9 @@ __all__ = [
     "MAX_OBJECTS",
     "add_reflection",
     "add_refraction",
+    "is_dispersed",
     "make_photon_structs",
+    "mark_dispersed",
     "surface_key",
 ]
 
@@ -47,12 +49,25 @@ def add_reflection(history: int):
     return history + 1024
 
 
+@wp.func
+def mark_dispersed(history: int, dispersive: int):
+    """History that remembers (bit 30) whether any boundary so far was `dispersive` (0 or 1)."""
+    return history | (dispersive << 30)
+
+
+@wp.func
+def is_dispersed(history: int):
+    """1 if the photon met a dispersive boundary: its wavelength decided its path or weight."""
+    return (history >> 30) & 1
+
+
 @functools.cache
 def make_photon_structs(precision: str) -> SimpleNamespace:
     """Structs Photons (arrays, one element a stored photon) and Job (one launch's share).
 
     Photons: `position` in the local frame [m]; `direction` where the photon was going, unit;
-    `wavelength_nm`; `flux` [W]; `surface`, see `surface_key`; `history`, packed counts.
+    `wavelength_nm`; `flux` [W]; `surface`, see `surface_key`; `history`, packed counts;
+    `emitter`, the row of its lamp among those that shine.
     """
     types = precision_types(precision)
     real, vec3 = types.real, types.vec3
@@ -65,6 +80,7 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         flux: wp.array(dtype=wp.float64)
         surface: wp.array(dtype=int)
         history: wp.array(dtype=int)
+        emitter: wp.array(dtype=int)
 
     @wp.struct
     class Job:

@@ -28,6 +28,7 @@ from sim.photons.photon_structs import (
     add_reflection,
     add_refraction,
     make_photon_structs,
+    mark_dispersed,
     surface_key,
 )
 from sim.precision import precision_types
@@ -66,7 +67,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     @wp.func
     def store(
         photons: photons_type, slot: int, point: vec3, direction: vec3, wavelength_nm: real,
-        flux: real, surface: int, history: int,
+        flux: real, surface: int, history: int, emitter: int,
     ):
         photons.position[slot] = point
         photons.direction[slot] = wp.vec3(
@@ -76,6 +77,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
         photons.flux[slot] = wp.float64(flux)
         photons.surface[slot] = surface
         photons.history[slot] = history
+        photons.emitter[slot] = emitter
 
     @wp.kernel(module="unique", enable_backward=False)
     def trace_photons(
@@ -122,6 +124,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                 alive = True
             met = interact(scene, ray, indices)
             if met.event == EVENT_BOUNDARY:
+                history = mark_dispersed(history, met.dispersive)
                 reflected_flux = flux * met.reflectance
                 refracted_flux = flux - reflected_flux
                 side_ray = ray_type()
@@ -169,7 +172,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                         store(
                             out_photons, job.first_slot + slot, met.point, ray.direction,
                             wavelength_nm, flux, surface_key(met.prim, met.face, met.side),
-                            history,
+                            history, job.emitter,
                         )
                 elif met.event == EVENT_ABSORB:
                     absorbed += flux
@@ -214,7 +217,8 @@ class PhotonBatch:
         Returns:
             position (n, 3) in world coordinates [m], direction (n, 3), wavelength_nm, flux [W],
             object and face (n,), side (0 front or outside, 1 back or inside), refractions,
-            reflections and bounces (n,).
+            reflections and bounces (n,), dispersed (n,) whether a dispersive boundary was met,
+            and emitter (n,), its row among the emitters that shine.
         """
         surface = self.data.surface.numpy()[self.slots]
         history = self.data.history.numpy()[self.slots]
@@ -229,6 +233,8 @@ class PhotonBatch:
             "refractions": history & 1023,
             "reflections": (history >> 10) & 1023,
             "bounces": (history >> 20) & 1023,
+            "dispersed": (history >> 30) & 1 == 1,
+            "emitter": self.data.emitter.numpy()[self.slots],
         }
 
 
@@ -353,4 +359,5 @@ def allocate_photons(precision: str, device: str, slots: int) -> Any:
     photons.flux = wp.empty(room, dtype=wp.float64, device=device)
     photons.surface = wp.empty(room, dtype=int, device=device)
     photons.history = wp.empty(room, dtype=int, device=device)
+    photons.emitter = wp.empty(room, dtype=int, device=device)
     return photons

@@ -148,7 +148,8 @@ def test_info_tells_what_a_file_holds(capfd, tmp_path, synthetic_picture):
     shown = capfd.readouterr().out
     for text in (
         "12 × 8 pixels", "4, centred on 430 to 670 nm", "W m^-2 sr^-1 nm^-1", VERSION,
-        "CIE 1931 2 degree", "deposited         0.7 W", "photons           2000", "max_interactions  256",
+        "CIE 1931 2 degree", "deposited         0.7 W", "photons           2000",
+        "max_interactions  256",
     ):  # fmt: skip
         assert text in shown
 
