@@ -36,7 +36,8 @@ class DescribedSpectrum(SceneModel):
     def _refuse_darkness(self) -> None:
         """Refuse a spectrum whose total is not a positive, finite number."""
         try:
-            self.emission()
+            with np.errstate(over="ignore"):  # an infinite total is refused, not warned of
+                self.emission()
         except SpectraError as error:
             allowed = "a total that is positive and finite"
             raise refusal(Problem("", f"{error}", None, allowed)) from None

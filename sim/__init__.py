@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from sim.image.exr_reading import SpectralImage, read_exr
     from sim.image.picture import Picture
     from sim.progress import Progress
+    from sim.ray_path import RayPath
     from sim.render import render
     from sim.settings import RenderSettings
-    from sim.single_ray import RayPath, trace_ray
+    from sim.single_ray import trace_ray
 
 __all__ = [
     "CapacityError",
@@ -51,7 +52,7 @@ _HOME = {
     "OutputError": "sim.errors",
     "Picture": "sim.image.picture",
     "Progress": "sim.progress",
-    "RayPath": "sim.single_ray",
+    "RayPath": "sim.ray_path",
     "RenderSettings": "sim.settings",
     "SettingsError": "sim.errors",
     "SpectralImage": "sim.image.exr_reading",

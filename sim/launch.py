@@ -50,8 +50,9 @@ def launch_ranges(
     Raises:
         KeyboardInterrupt: within one range's time of Ctrl-C, all workers having stopped.
     """
-    kernel.module.load(wp.get_device(device))  # must not happen in two threads at once
-    # Arguments are packed here, in one thread: only the native call is safe in several.
+    # Recording loads the kernel's module and packs the arguments here, in one thread: only the
+    # native call is safe in several. (Loading it beforehand would compile it once more, for the
+    # block size of a GPU.)
     commands = [
         wp.launch(
             kernel, dim=count, inputs=[start, *inputs_of(number)], device=device, record_cmd=True

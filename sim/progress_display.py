@@ -34,14 +34,14 @@ def progress_display(stream: TextIO) -> Iterator[ProgressCallback]:
     columns = BarColumn(), TextColumn("{task.description}", markup=False)
     with RichProgress(*columns, console=Console(file=stream), transient=True) as bar:
         task = bar.add_task("starting", total=None)
-        rate = _Rate()
+        pace = _Pace()
 
         def show(progress: Progress) -> None:
             bar.update(
                 task,
                 total=progress.photons_total,
                 completed=progress.photons_done,
-                description=progress_text(progress, rate.after(progress)),
+                description=progress_text(progress, *pace.after(progress)),
             )
 
         yield show
@@ -52,49 +52,69 @@ class ProgressLines:
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
-        self._rate = _Rate()
+        self._pace = _Pace()
         self._stages: set[str] = set()
         self._last_seconds = -math.inf
 
     def __call__(self, progress: Progress) -> None:
         """Write one line, if it is time for one."""
-        rate = self._rate.after(progress)
+        pace = self._pace.after(progress)
         is_due = progress.seconds - self._last_seconds >= _SECONDS_BETWEEN_LINES
         if is_due or progress.stage not in self._stages:
             self._stages.add(progress.stage)
             self._last_seconds = progress.seconds
-            print(progress_text(progress, rate), file=self._stream, flush=True)
+            print(progress_text(progress, *pace), file=self._stream, flush=True)
 
 
-class _Rate:
-    """Photons per second since the first report that counted any.
+class _Pace:
+    """Photons per second, and time left, since the first report that counted any photons.
 
     What comes before, mostly compiling, happens once, and would spoil the estimate.
     """
 
     def __init__(self) -> None:
         self._first: Progress | None = None
+        self._pass_began: Progress | None = None
 
-    def after(self, progress: Progress) -> float | None:
-        """The rate [1/s] as of this report; None while it is not known."""
-        if self._first is None:
+    def after(self, progress: Progress) -> tuple[float | None, float | None]:
+        """The rate [1/s] and the time left [s] as of this report; None while not known."""
+        if self._first is None or self._pass_began is None:
             if progress.photons_done > 0:
-                self._first = progress
-            return None
+                self._first = self._pass_began = progress
+            return None, None
+        if progress.pass_index > self._pass_began.pass_index:
+            self._pass_began = progress
         seconds = progress.seconds - self._first.seconds
         photons = progress.photons_done - self._first.photons_done
-        return photons / seconds if seconds > 0.0 and photons > 0 else None
+        if seconds <= 0.0 or photons <= 0:
+            return None, None
+        return photons / seconds, self._seconds_left(progress, photons / seconds)
+
+    def _seconds_left(self, progress: Progress, rate: float) -> float | None:
+        """By the mean length of the passes so far; in the first pass by the photons to come."""
+        assert self._first is not None and self._pass_began is not None
+        finished = self._pass_began.pass_index - self._first.pass_index
+        if finished > 0:
+            pass_seconds = (self._pass_began.seconds - self._first.seconds) / finished
+            in_this_pass = progress.seconds - self._pass_began.seconds
+            to_come = progress.passes - progress.pass_index
+            return max(pass_seconds * to_come - in_this_pass, 0.0)
+        left = progress.photons_total - progress.photons_done
+        return left / rate if left > 0 else None  # A single pass gathers for who knows how long.
 
 
-def progress_text(progress: Progress, photons_per_second: float | None) -> str:
+def progress_text(
+    progress: Progress, photons_per_second: float | None, seconds_left: float | None
+) -> str:
     """One report in words: ``pass 3/8, trace: 1.5M of 4M photons, 2.1M/s, 1 s left``."""
     text = (
         f"pass {progress.pass_index + 1}/{progress.passes}, {progress.stage}: "
         f"{_rounded(progress.photons_done)} of {_rounded(progress.photons_total)} photons"
     )
     if photons_per_second is not None:
-        left = (progress.photons_total - progress.photons_done) / photons_per_second
-        text += f", {_rounded(photons_per_second)}/s, {_duration(left)} left"
+        text += f", {_rounded(photons_per_second)}/s"
+    if seconds_left is not None:
+        text += f", {_duration(seconds_left)} left"
     return text
 
 

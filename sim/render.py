@@ -18,15 +18,14 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 import scenes
 from sim.device import start_device
 from sim.errors import SettingsError
 from sim.image.camera import compile_camera
 from sim.image.film import Film, create_film, expose
-from sim.image.footprint import pixel_footprint
 from sim.image.picture import Picture
+from sim.image.survey import Survey, survey_view
 from sim.photons.energy import EnergyBooks
 from sim.photons.lamps import Lamps, compile_lamps
 from sim.photons.photon_map import build_photon_map
@@ -38,7 +37,7 @@ from sim.settings import RenderSettings, ResolvedSettings
 
 __all__ = ["gather_radius", "render"]
 
-FOOTPRINTS_A_RADIUS = 2.0
+FOOTPRINTS_A_RADIUS = 3.0
 """The first pass gathers over a disc this many pixel widths in radius."""
 
 
@@ -114,17 +113,20 @@ def render(
         device = start_device(plan.device)
         compiled = compile_scene(scene, precision=plan.precision, device=device)
         edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
-        lamps = compile_lamps(compiled, edges_nm, plan.photons)
+        assert scene.camera is not None  # require_renderable has seen to it
+        camera = compile_camera(compiled, scene.camera, scene.film)
+        survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
+        lamps = compile_lamps(compiled, edges_nm, plan.photons, visible=survey.extent)
         receivers = compile_receivers(compiled, lamps, edges_nm)
         film = create_film(
             scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device
         )
-        radius = gather_radius(compiled, plan)
+        radius = plan.radius or gather_radius(survey)
     books = []
     for pass_index in range(plan.passes):
         watch.pass_index = pass_index
         pass_radius = radius * radius_shrinkage(pass_index, plan.alpha)
-        books.append(_render_pass(compiled, lamps, receivers, film, plan, pass_radius, watch))
+        books.append(_render_pass(compiled, lamps, receivers, camera, film, plan, pass_radius, watch))
     return Picture(
         spectral_radiance=film.radiance(),
         standard_error=film.standard_error(),
@@ -142,30 +144,24 @@ def radius_shrinkage(pass_index: int, alpha: float) -> float:
     return float(np.sqrt(np.prod((i + alpha) / (i + 1.0))))
 
 
-def gather_radius(compiled: CompiledScene, settings: ResolvedSettings) -> float:
-    """The first pass's gather radius [m]: as set, or from the pixels' footprint.
+def gather_radius(survey: Survey) -> float:
+    """The first pass's gather radius, from the median pixel's footprint [m].
 
     Raises:
-        SettingsError: it is not set, and no pixel sees a diffuse surface to measure it on.
+        SettingsError: no pixel sees a diffuse surface to measure it on.
     """
-    if settings.radius is not None:
-        return settings.radius
-    scene = compiled.scene
-    assert scene.camera is not None  # require_renderable has seen to it
-    camera = compile_camera(compiled, scene.camera, scene.film)
-    edges: npt.NDArray[np.float64] = scene.film.edges_nm
-    footprint = pixel_footprint(compiled, camera, float(0.5 * (edges[0] + edges[-1])))
-    if footprint is None:
+    if len(survey.widths) == 0:
         raise SettingsError(
             "radius", None, "a radius in metres, since the camera sees no diffuse surface"
         )
-    return FOOTPRINTS_A_RADIUS * footprint
+    return FOOTPRINTS_A_RADIUS * float(np.median(survey.widths))
 
 
 def _render_pass(
     compiled: CompiledScene,
     lamps: Lamps,
     receivers: Any,
+    camera: Any,
     film: Film,
     plan: ResolvedSettings,
     radius: float,
@@ -187,12 +183,10 @@ def _render_pass(
             compiled, batch, receivers, radius, threads=plan.threads
         )
     with watch.timing("gather"):
-        scene = compiled.scene
-        assert scene.camera is not None
         expose(
             film,
             compiled,
-            compile_camera(compiled, scene.camera, scene.film),
+            camera,
             photon_map,
             receivers,
             seed=plan.seed,

@@ -47,6 +47,7 @@ class CompiledScene:
         precision: "float32" or "float64".
         device: Warp's name of the device the arrays live on.
         features: what the kernels must handle.
+        media: the media in the order of their indices, the ambient one first.
         origin: (3,), world position of the local frame's origin [m].
         data: the device-side Scene struct.
     """
@@ -55,6 +56,7 @@ class CompiledScene:
     precision: str
     device: str
     features: Features
+    media: tuple[Medium, ...]
     origin: FloatArray
     data: Any
 
@@ -105,7 +107,7 @@ def compile_scene(
     ]
     data.bodies = struct_array(structs.Body, rows, device)
     _fill_media(data, media, air_powers, precision, device)
-    return CompiledScene(scene, precision, device, features, origin, data)
+    return CompiledScene(scene, precision, device, features, tuple(media), origin, data)
 
 
 def struct_array(struct: Any, rows: list[Row], device: str) -> Any:

@@ -4,6 +4,7 @@ It advances by the same `interact` step as photons and camera paths.
 """
 
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,14 +13,15 @@ import numpy.typing as npt
 import warp as wp
 
 import scenes
-from sim.analytic import angle_between
 from sim.device import start_device
 from sim.errors import SettingsError
 from sim.features import Features
+from sim.ray_path import RayPath
 from sim.scene_data import CompiledScene, compile_scene
 from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+from spectra import air_index
 
-__all__ = ["RayPath", "trace_compiled_rays", "trace_ray"]
+__all__ = ["trace_compiled_rays", "trace_ray"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,45 +32,6 @@ _TOTAL = 3
 _DEPOSIT = 4
 _ABSORB = 5
 _NAMES = ("escape", "refract", "reflect", "total internal reflection", "deposit", "absorb")
-
-
-@dataclass(frozen=True)
-class RayPath:
-    """Where one ray went.
-
-    Attributes:
-        points: (n + 1, 3), start, vertices and end [m]. A ray that escapes ends at the scene's
-            bounds, or one unit further where it has left them already.
-        directions: (n, 3), unit, of each segment.
-        events: n strings, what happened at the end of each segment: "refract", "reflect",
-            "total internal reflection", "deposit", "absorb", "escape", or "limit" if the ray
-            was still going after `max_interactions`.
-        objects: n names of the objects met, "" where nothing was.
-        reflectances: (n,) mean reflectance of s and p light at each vertex; 0 where the ray
-            ends.
-        wavelength_nm: of the ray.
-    """
-
-    points: FloatArray
-    directions: FloatArray
-    events: tuple[str, ...]
-    objects: tuple[str, ...]
-    reflectances: FloatArray
-    wavelength_nm: float
-
-    @property
-    def deviation(self) -> float:
-        """Angle between the first and the last direction [rad]."""
-        return float(angle_between(self.directions[0], self.directions[-1]))
-
-    @property
-    def transmittance(self) -> float:
-        """Fraction of the flux that takes this path."""
-        factors = [
-            {"refract": 1.0 - r, "reflect": r}.get(event, 1.0)
-            for event, r in zip(self.events, self.reflectances, strict=True)
-        ]
-        return float(np.prod(factors))
 
 
 @functools.cache
@@ -85,7 +48,7 @@ def make_trace_single(precision: str, features: Features) -> Any:
         origins: wp.array(dtype=vec3),
         directions: wp.array(dtype=vec3),
         wavelengths_nm: wp.array(dtype=real),
-        reflect_first: int,
+        reflects: wp.array(dtype=int),
         out_points: wp.array2d(dtype=vec3),
         out_directions: wp.array2d(dtype=vec3),
         out_events: wp.array2d(dtype=int),
@@ -108,25 +71,26 @@ def make_trace_single(precision: str, features: Features) -> Any:
             out_prims[i, step] = met.prim
             count += 1
             if met.event != EVENT_BOUNDARY:
-                out_events[i, step] = 0
+                out_events[i, step] = _ESCAPE
                 if met.event == EVENT_DEPOSIT:
-                    out_events[i, step] = 4
+                    out_events[i, step] = _DEPOSIT
                 elif met.event == EVENT_ABSORB:
-                    out_events[i, step] = 5
+                    out_events[i, step] = _ABSORB
                 break
             out_reflectances[i, step] = met.reflectance
-            out_events[i, step] = 1
+            out_events[i, step] = _REFRACT
             ray.origin = met.point
             ray.prim = met.prim
             ray.face = met.face
             if met.total == 1:
-                out_events[i, step] = 3
-                ray.direction = met.reflected
-            elif step < reflect_first:
-                out_events[i, step] = 2
+                out_events[i, step] = _TOTAL
                 ray.direction = met.reflected
             else:
                 ray.direction = met.refracted
+                if step < reflects.shape[0]:
+                    if reflects[step] == 1:
+                        out_events[i, step] = _REFLECT
+                        ray.direction = met.reflected
         out_counts[i] = count
 
     return trace_single
@@ -139,7 +103,7 @@ def trace_ray(
     wavelength_nm: float,
     *,
     max_interactions: int = 256,
-    reflect_first: int = 0,
+    branches: Sequence[str] = (),
     precision: str = "float64",
     device: str = "cpu",
 ) -> RayPath:
@@ -151,23 +115,27 @@ def trace_ray(
         direction: (3,), of any length.
         wavelength_nm: must lie in the range of every medium of the scene.
         max_interactions: surfaces to follow the ray through.
-        reflect_first: at this many first boundaries the reflected branch is followed instead.
+        branches: which branch to follow at the first boundaries, one by one, "refract" or
+            "reflect"; the ray refracts at all later ones. Where reflection is total there is
+            no other branch, and the entry is passed over. ("refract", "reflect") in a water
+            drop is the primary rainbow.
         precision: "float64" or "float32".
         device: "cpu", or a CUDA device.
 
     Raises:
         spectra.WavelengthOutOfRange: a medium has no index at the wavelength.
-        SettingsError: origin or direction is not three finite numbers, or direction is zero.
+        SettingsError: origin or direction is not three finite numbers, direction is zero, a
+            branch is neither "refract" nor "reflect", or max_interactions is below 1.
         DeviceError: the device does not exist.
     """
     compiled = _compiled(scene, precision, start_device(device))
     return trace_compiled_rays(
         compiled,
         _three_numbers("origin", origin)[None],
-        _three_numbers("direction", direction)[None],
+        _direction(direction)[None],
         np.array([wavelength_nm], dtype=np.float64),
         max_interactions=max_interactions,
-        reflect_first=reflect_first,
+        branches=branches,
     )[0]
 
 
@@ -190,12 +158,13 @@ def trace_compiled_rays(
     wavelengths_nm: FloatArray,
     *,
     max_interactions: int = 256,
-    reflect_first: int = 0,
+    branches: Sequence[str] = (),
 ) -> list[RayPath]:
     """Follow many rays, (n, 3) origins [m] and directions and (n,) wavelengths; see `trace_ray`."""
-    for item in compiled.scene.objects:
-        if isinstance(item.material, scenes.Dielectric):
-            item.material.resolved().eta(wavelengths_nm)  # raises outside its range
+    if max_interactions < 1:
+        raise SettingsError("max_interactions", max_interactions, "a whole number from 1")
+    reflects = _reflects(branches)
+    _require_indices(compiled, wavelengths_nm)
     structs, device, rays = compiled.structs, compiled.device, len(origins)
     size = (rays, max_interactions)
     local = compiled.to_local(origins)
@@ -213,7 +182,7 @@ def trace_compiled_rays(
             wp.array(local, dtype=structs.vec3, device=device),
             wp.array(directions, dtype=structs.vec3, device=device),
             wp.array(wavelengths_nm, dtype=structs.real, device=device),
-            reflect_first,
+            wp.array(reflects, dtype=int, device=device),
         ],
         outputs=[points, ways, events, prims, reflectances, counts],
         device=device,
@@ -281,11 +250,35 @@ class _Record:
         return max(reach, default=1.0)
 
 
+def _require_indices(compiled: CompiledScene, wavelengths_nm: FloatArray) -> None:
+    """Raise `spectra.WavelengthOutOfRange` where some medium of the scene has no index."""
+    for medium in compiled.media:
+        medium.eta(wavelengths_nm)
+    if compiled.features.air_conversion:
+        air_index(wavelengths_nm)
+
+
+def _reflects(branches: Sequence[str]) -> npt.NDArray[np.int32]:
+    """1 for every boundary at which the reflected branch is followed, 0 for the other."""
+    allowed = (_NAMES[_REFRACT], _NAMES[_REFLECT])
+    if isinstance(branches, str) or not all(branch in allowed for branch in branches):
+        raise SettingsError("branches", branches, f"a sequence of {allowed[0]!r} or {allowed[1]!r}")
+    return np.array([branch == _NAMES[_REFLECT] for branch in branches], dtype=np.int32)
+
+
 def _three_numbers(name: str, value: npt.ArrayLike) -> FloatArray:
-    """`value` as (3,) finite float64, not all zero if it is a direction."""
+    """`value` as (3,) finite float64."""
     vector = np.asarray(value, dtype=np.float64)
     if vector.shape != (3,) or not np.all(np.isfinite(vector)):
         raise SettingsError(name, value, "three finite numbers")
-    if name == "direction" and not np.any(vector):
-        raise SettingsError(name, value, "three finite numbers, not all zero")
     return vector
+
+
+def _direction(value: npt.ArrayLike) -> FloatArray:
+    """`value` as (3,) of a length near 1, so that its square neither overflows nor vanishes."""
+    vector = _three_numbers("direction", value)
+    if not np.any(vector):
+        raise SettingsError("direction", value, "three finite numbers, not all zero")
+    _, exponent = np.frexp(np.max(np.abs(vector)))
+    scaled: FloatArray = np.ldexp(vector, -exponent)  # a power of two: no digit changes
+    return scaled

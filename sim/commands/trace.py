@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import functools
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -41,7 +42,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _wavelengths(text: str) -> list[float]:
-    return [float(part) for part in text.split(",")]
+    wavelengths_nm = [float(part) for part in text.split(",")]
+    if not all(0.0 < wavelength_nm < math.inf for wavelength_nm in wavelengths_nm):
+        raise ValueError
+    return wavelengths_nm
 
 
 _wavelengths.__name__ = "list of wavelengths"

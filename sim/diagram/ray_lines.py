@@ -13,6 +13,8 @@ from spectra.srgb import wavelength_to_srgb
 
 __all__ = ["DrawnPath", "ray_lines"]
 
+_NEARLY_WHITE = 0.3  # Share of its strongest channel that a mixture needs in its weakest.
+
 
 @dataclass(frozen=True, eq=False)
 class DrawnPath:
@@ -61,16 +63,28 @@ def ray_lines(
     colours = wavelength_to_srgb(np.array([path.wavelength_nm for path in paths]))
     colour_of = np.repeat(colours, [len(part) for part in segments], axis=0)
     near = KDTree(every.reshape(-1, 4)).query_ball_point(every.reshape(-1, 4), resolution)
+    balance = _white_balance(paths)
     is_drawn = np.zeros(len(every), dtype=np.bool_)
-    kept, sums = [], []
+    kept, mixed = [], []
     for first, group in enumerate(near):
         if not is_drawn[first]:
             members = [index for index in group if not is_drawn[index]]
             is_drawn[members] = True
             kept.append(first)
-            sums.append(colour_of[members].sum(axis=0))
-    summed = np.array(sums)
-    return every[kept], summed / np.maximum(summed.max(axis=1, keepdims=True), 1.0)
+            alone = len(members) == 1
+            mixed.append(colour_of[first] if alone else colour_of[members].sum(axis=0) * balance)
+    colour = np.array(mixed)
+    return every[kept], colour / np.maximum(colour.max(axis=1, keepdims=True), 1.0)
+
+
+def _white_balance(paths: Sequence[DrawnPath]) -> NDArray[np.float64]:
+    """Factors (3,) that make all wavelengths together white, if they are nearly so anyway."""
+    every_nm = np.array(sorted({path.wavelength_nm for path in paths}))
+    total: NDArray[np.float64] = wavelength_to_srgb(every_nm).sum(axis=0)
+    if total.min() < _NEARLY_WHITE * total.max():
+        return np.ones(3)
+    balance: NDArray[np.float64] = total.mean() / total
+    return balance
 
 
 def _with_long_end(path: DrawnPath, reach: float) -> NDArray[np.float64]:

@@ -34,7 +34,7 @@ __all__ = ["make_film_struct", "make_render_camera"]
 MAX_INTERACTIONS = wp.constant(48)
 """Surfaces that a camera path and its branches may meet."""
 
-BRANCH_THRESHOLD = wp.constant(0.01)
+BRANCH_THRESHOLD = wp.constant(0.1)
 """A side branch of less throughput plays Russian roulette for this much."""
 
 STACK_SIZE = wp.constant(8)
@@ -75,7 +75,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
     @wp.func
     def follow(
         scene: scene_type, photons: map_type, receivers: receivers_type, camera_ray: ray_type, band: int,
-        wavelength_nm: real, key: wp.uint64, sample: wp.array2d(dtype=wp.float64), row: int,
+        turn: int, wavelength_nm: real, key: wp.uint64, sample: wp.array2d(dtype=wp.float64), row: int,
     ):
         """Add one path's radiance to `sample[row]`; 1 if a branch met a dispersive surface."""
         indices = media_indices(scene, wavelength_nm)
@@ -144,7 +144,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 alive = False
                 if met.event == EVENT_DEPOSIT and (band < 0 or dispersed == 1):
                     gather(
-                        scene, photons, receivers, met, band,
+                        scene, photons, receivers, met, band, turn,
                         throughput / receivers.band_width_nm, sample, row,
                     )
         return met_dispersive
@@ -163,14 +163,14 @@ def make_render_camera(precision: str, features: Features) -> Any:
             film.sample[pixel, band] = wp.float64(0.0)
         # R2 points over the passes, shifted at random for each pixel: every pixel's samples
         # are spread, and neighbours share no pattern.
-        turn = real(film.pass_index)
+        step = real(film.pass_index)
         shift = wp.uint64(pixel)
-        x = to_unit(hash64(film.key, shift * wp.uint64(3)), turn)
-        y = to_unit(hash64(film.key, shift * wp.uint64(3) + wp.uint64(1)), turn)
-        z = to_unit(hash64(film.key, shift * wp.uint64(3) + wp.uint64(2)), turn)
-        x += turn * real(0.7548776662466927)
-        y += turn * real(0.5698402909980532)
-        z += turn * real(0.6180339887498949)
+        x = to_unit(hash64(film.key, shift * wp.uint64(3)), step)
+        y = to_unit(hash64(film.key, shift * wp.uint64(3) + wp.uint64(1)), step)
+        z = to_unit(hash64(film.key, shift * wp.uint64(3) + wp.uint64(2)), step)
+        x += step * real(0.7548776662466927)
+        y += step * real(0.5698402909980532)
+        z += step * real(0.6180339887498949)
         ray = ray_type()
         ray.origin = camera.position
         ray.direction = look(
@@ -184,13 +184,14 @@ def make_render_camera(precision: str, features: Features) -> Any:
         key = hash64(film.key + wp.uint64(1), shift * wp.uint64(65536) + wp.uint64(film.pass_index))
         wavelength_nm = receivers.first_edge_nm + real(0.5) * receivers.band_width_nm * real(receivers.bands)
         dispersed = follow(
-            scene, photons, receivers, ray, -1, wavelength_nm, key, film.sample, pixel
+            scene, photons, receivers, ray, -1, 0, wavelength_nm, key, film.sample, pixel
         )
         if dispersed == 1:
+            turn = int(key >> wp.uint64(33))
             for band in range(receivers.bands):
                 wavelength_nm = receivers.first_edge_nm + receivers.band_width_nm * (real(band) + inside_band)
                 follow(
-                    scene, photons, receivers, ray, band, wavelength_nm, key, film.sample, pixel
+                    scene, photons, receivers, ray, band, turn, wavelength_nm, key, film.sample, pixel
                 )
         weight = wp.float64(1.0) / wp.float64(film.passes_before + 1)
         for band in range(receivers.bands):

@@ -67,7 +67,7 @@ class Film:
 def create_film(
     height: int, width: int, edges_nm: FloatArray, lamps: int, device: str
 ) -> Film:
-    """An unexposed film, with scratch for a sum a lamp beside those of the bands."""
+    """An unexposed film, with scratch for the sums of lamps beside those of the bands."""
     data = make_film_struct()()
     size = (height * width, len(edges_nm) - 1)
     data.sample = wp.zeros((size[0], size[1] + lamps), dtype=wp.float64, device=device)

@@ -21,7 +21,7 @@ from sim.geometry.extent import distance_to_circle, distance_to_planes, distance
 from sim.geometry.flat import plane_coordinates
 from sim.photons.photon_map import make_map_structs
 from sim.photons.photon_structs import surface_key
-from sim.photons.receivers import make_receiver_structs
+from sim.photons.receivers import DEALS, make_receiver_structs
 from sim.precision import precision_types
 from sim.sampling.directions import to_world
 from sim.scene_structs import SHAPE_FLAT, SHAPE_POLYHEDRON, make_scene_structs
@@ -104,11 +104,12 @@ def make_kernel_integral(precision: str, features: Features) -> object:
 
 @functools.cache
 def make_gather(precision: str, features: Features) -> object:
-    """Device function `gather(scene, photons, receivers, met, band, scale, sums, row)`.
+    """Device function `gather(scene, photons, receivers, met, band, turn, scale, sums, row)`.
 
     It adds `scale` times the reflected radiance, times the bands' width, to the bands of
-    `sums[row]`: to all of them where `band` is −1, else to that one. The columns behind the
-    bands, one a lamp, are scratch and zero before and after.
+    `sums[row]`: to all of them where `band` is −1, else to that one, from the deal of undispersed
+    photons that is its `turn`. The columns behind the bands, one a lamp, are
+    scratch, zero before and after.
     """
     real = precision_types(precision).real
     structs = make_scene_structs(precision)
@@ -118,8 +119,11 @@ def make_gather(precision: str, features: Features) -> object:
     kernel_integral = make_kernel_integral(precision, features)
 
     @wp.func
-    def sum_group(photons: map_type, met: interaction_type, surface: int, group: int):
-        """Σ (1 − d²/r²) w of one group's photons."""
+    def sum_group(
+        photons: map_type, receivers: receivers_type, met: interaction_type, surface: int,
+        group: int, band: int,
+    ):
+        """Σ (1 − d²/r²) w of one group's photons, as far as they shine in `band`."""
         inv_radius2 = real(1.0) / (photons.radius * photons.radius)
         query = wp.hash_grid_query(photons.grid, met.point, photons.radius, group)
         candidate = int(0)
@@ -128,15 +132,18 @@ def make_gather(precision: str, features: Features) -> object:
             offset = photons.position[candidate] - met.point
             x = wp.dot(offset, offset) * inv_radius2
             if x < real(1.0) and photons.surface[candidate] == surface:
-                total += (real(1.0) - x) * photons.weight[candidate]
+                value = (real(1.0) - x) * photons.weight[candidate]
+                if group >= receivers.bands:
+                    value *= receivers.spread[photons.lamp[candidate], met.prim, band]
+                total += value
         return total
 
     @wp.func
     def add_groups(
-        photons: map_type, met: interaction_type, surface: int, peak: real,
-        sums: wp.array2d(dtype=wp.float64), row: int,
+        photons: map_type, receivers: receivers_type, met: interaction_type, surface: int,
+        peak: real, sums: wp.array2d(dtype=wp.float64), row: int,
     ):
-        """Add `peak` (1 − d²/r²) w of every photon to its group's column."""
+        """Add `peak` (1 − d²/r²) w of every photon to its band's column, or to its lamp's."""
         inv_radius2 = real(1.0) / (photons.radius * photons.radius)
         query = wp.hash_grid_query(photons.grid, met.point, photons.radius)
         candidate = int(0)
@@ -145,31 +152,34 @@ def make_gather(precision: str, features: Features) -> object:
             x = wp.dot(offset, offset) * inv_radius2
             if x < real(1.0) and photons.surface[candidate] == surface:
                 value = peak * (real(1.0) - x) * photons.weight[candidate]
-                sums[row, photons.group[candidate]] += wp.float64(value)
+                column = photons.group[candidate]
+                if column >= receivers.bands:
+                    column = receivers.bands + photons.lamp[candidate]
+                sums[row, column] += wp.float64(value)
 
     @wp.func
     def gather(
         scene: scene_type, photons: map_type, receivers: receivers_type, met: interaction_type,
-        band: int, scale: real, sums: wp.array2d(dtype=wp.float64), row: int,
+        band: int, turn: int, scale: real, sums: wp.array2d(dtype=wp.float64), row: int,
     ):
         bands = receivers.bands
         surface = surface_key(met.prim, met.face, met.side)
         inside = kernel_integral(scene, met, photons.radius)
         peak = scale * real(2.0) / (real(PI) * photons.radius * photons.radius * inside)
         if band < 0:
-            add_groups(photons, met, surface, peak, sums, row)
-        else:
-            sums[row, band] += wp.float64(peak * sum_group(photons, met, surface, band))
-        for lamp in range(receivers.lamps):
-            if band < 0:
+            add_groups(photons, receivers, met, surface, peak, sums, row)
+            for lamp in range(receivers.lamps):
                 total = sums[row, bands + lamp]
                 sums[row, bands + lamp] = wp.float64(0.0)
                 if total > wp.float64(0.0):
                     for b in range(bands):
                         share = wp.float64(receivers.spread[lamp, met.prim, b])
                         sums[row, b] += total * share
-            else:
-                one = peak * sum_group(photons, met, surface, bands + lamp)
-                sums[row, band] += wp.float64(one * receivers.spread[lamp, met.prim, band])
+        else:
+            deal = bands + (band + turn) % DEALS
+            total = sum_group(photons, receivers, met, surface, band, band)
+            dealt = sum_group(photons, receivers, met, surface, deal, band)
+            total += dealt * real(wp.static(float(DEALS)))
+            sums[row, band] += wp.float64(peak * total)
 
     return gather

@@ -1,5 +1,6 @@
 """The scene's emitters as device arrays, and how many photons each sends where."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,10 +30,22 @@ __all__ = ["Lamps", "Stream", "compile_lamps"]
 
 FloatArray = npt.NDArray[np.float64]
 
-SPECULAR_SHARE = 0.5
-RECEIVER_SHARE = 0.35
+Visible = Callable[[int, FloatArray], FloatArray | None]
+"""(object, frame) to (2, 3): low and high of its visible part along the frame's rows, or None."""
+
+Aim = tuple[Any, ...]
+"""The fields of a Target, but for its number of photons."""
+
+SPECULAR_SHARE = 0.4
+RECEIVER_SHARE = 0.5
 """Shares of a lamp's photons aimed at specular objects and at receivers; the rest go as the lamp
 radiates. They divide effort, not light: any positive shares give the same expected picture."""
+
+VISIBLE_MARGIN = 0.05
+"""Added on each side of a receiver's visible part, as a fraction of its size."""
+
+VISIBLE_WORTH = 0.7
+"""A visible part larger than this fraction of the receiver is not aimed at for itself."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +80,11 @@ class Lamps:
 
 
 def compile_lamps(
-    compiled: CompiledScene, edges_nm: FloatArray, photons: int
+    compiled: CompiledScene,
+    edges_nm: FloatArray,
+    photons: int,
+    *,
+    visible: Visible | None = None,
 ) -> Lamps:
     """Lay the emitters out and share `photons` among them and their targets.
 
@@ -75,6 +92,8 @@ def compile_lamps(
         compiled: the scene.
         edges_nm: band edges of the film; light outside of them is not emitted.
         photons: photons of one pass.
+        visible: tells which part of a receiver the camera sees, so that most of the photons
+            aimed at the receiver are aimed there; None: no camera.
     """
     scene, structs = compiled.scene, make_lamp_structs(compiled.precision)
     emitters: list[tuple[Any, ...]] = []
@@ -88,7 +107,7 @@ def compile_lamps(
         if spectrum is None or counts[row] == 0:
             continue
         shining.append(spectrum)
-        aims = _find_targets(compiled, emitter)
+        aims = _find_targets(compiled, emitter, visible)
         pieces = _segments(spectrum)
         shares = _share(counts[row], [share for share, _ in aims])
         first = len(targets)
@@ -175,34 +194,55 @@ def _emitter_row(compiled: CompiledScene, emitter: Any) -> tuple[Any, ...]:
     return int(RECTANGLE_LAMP), 0, centre, frame, half_u, half_v, 0.0, 1.0
 
 
-def _find_targets(compiled: CompiledScene, emitter: Any) -> list[tuple[float, tuple[Any, ...]]]:
+def _find_targets(
+    compiled: CompiledScene, emitter: Any, visible: Visible | None
+) -> list[tuple[float, Aim]]:
     """(share of photons, Target fields but the count); the lamp's own distribution first."""
     base = (int(AIM_BASE), np.zeros(3), np.eye(3), 0.0, 0.0, 0.0)
     if isinstance(emitter, scenes.Beam):
         return [(1.0, base)]
     # A spherical lamp draws cones from its centre: what its rays can hit is larger by its radius.
     margin = emitter.radius if isinstance(emitter, scenes.SphereLamp) else 0.0
-    specular, receivers = [], []
-    for item in compiled.scene.objects:
-        aim = _aim_at(compiled, item.shape, margin)
-        if aim is None:
-            continue
+    specular: list[Aim] = []
+    receivers: list[Aim] = []
+    for prim, item in enumerate(compiled.scene.objects):
+        if isinstance(item.shape, scenes.Plane):
+            continue  # without end, so there is nothing to aim at
         if isinstance(item.material, scenes.Dielectric):
-            specular.append(aim)
+            specular.append(_cone(compiled, item.shape, margin))
         elif isinstance(item.material, scenes.Lambertian):
-            receivers.append(aim)
+            if isinstance(item.shape, scenes.Rectangle):
+                receivers.extend(_areas(compiled, item.shape, prim, visible))
+            else:
+                receivers.append(_cone(compiled, item.shape, margin))
     aims = [(SPECULAR_SHARE / len(specular), aim) for aim in specular]
     aims += [(RECEIVER_SHARE / len(receivers), aim) for aim in receivers]
     return [(1.0 - SPECULAR_SHARE - RECEIVER_SHARE, base), *aims]
 
 
-def _aim_at(compiled: CompiledScene, shape: Any, margin: float) -> tuple[Any, ...] | None:
-    """Target fields that cover `shape`; None for a plane without end, which has no aim."""
-    if isinstance(shape, scenes.Plane):
-        return None
-    if isinstance(shape, scenes.Rectangle):
-        half_u, half_v = 0.5 * shape.size[0], 0.5 * shape.size[1]
-        centre = compiled.to_local(shape.position)
-        return int(AIM_AREA), centre, np.stack(shape.frame()), half_u, half_v, 0.0
+def _cone(compiled: CompiledScene, shape: Any, margin: float) -> Aim:
+    """The cone around a shape's bounding sphere."""
     centre, radius = shape.bounding_sphere()
     return int(AIM_CONE), compiled.to_local(centre), np.eye(3), 0.0, 0.0, radius + margin
+
+
+def _areas(
+    compiled: CompiledScene, shape: scenes.Rectangle, prim: int, visible: Visible | None
+) -> list[Aim]:
+    """A rectangle, and the part of it that the camera sees if that is much smaller."""
+    frame = np.stack(shape.frame())
+    centre = compiled.to_local(shape.position)
+    half = 0.5 * np.asarray(shape.size)
+    areas: list[Aim] = [(int(AIM_AREA), centre, frame, half[0], half[1], 0.0)]
+    extent = None if visible is None else visible(prim, frame)
+    if extent is not None:
+        middle = frame @ centre
+        margin = VISIBLE_MARGIN * (extent[1] - extent[0])
+        low = np.maximum((extent[0] - margin)[:2], middle[:2] - half)
+        high = np.minimum((extent[1] + margin)[:2], middle[:2] + half)
+        seen = 0.5 * (high - low)
+        if np.all(seen > 0.0) and np.prod(seen) < VISIBLE_WORTH * np.prod(half):
+            at = frame.T @ np.array([*(0.5 * (low + high)), middle[2]])
+            # Aimed at twice: the whole gets one share, its visible part three.
+            areas += [(int(AIM_AREA), at, frame, seen[0], seen[1], 0.0)] * 3
+    return areas

@@ -20,7 +20,7 @@ import warp as wp
 
 from sim.launch import cut_ranges, launch_ranges
 from sim.photons.photon_structs import is_dispersed, make_photon_structs
-from sim.photons.receivers import make_receiver_structs
+from sim.photons.receivers import DEALS, make_receiver_structs
 from sim.photons.tracing import PhotonBatch
 from sim.precision import precision_types
 from sim.scene_data import CompiledScene
@@ -28,6 +28,10 @@ from sim.scene_data import CompiledScene
 __all__ = ["PhotonMap", "build_photon_map", "make_map_structs"]
 
 _RANGE_SIZE = 65536
+
+CELLS_A_RADIUS = 1.5
+"""Width of a cell in gather radii. A query for one band finds few photons and costs the cells it
+looks into; one for all bands costs the photons it passes over: this is between the two."""
 
 _MAX_CELLS_A_SIDE = 1024
 _MAX_CELLS = 1 << 23
@@ -51,6 +55,7 @@ def make_map_structs(precision: str) -> SimpleNamespace:
         weight: wp.array(dtype=real)
         surface: wp.array(dtype=int)
         group: wp.array(dtype=int)
+        lamp: wp.array(dtype=int)
 
     return SimpleNamespace(Map=Map)
 
@@ -89,8 +94,9 @@ def make_collect(precision: str) -> Any:
             high = receivers.reflectance[surface >> 14, k + 1]
             out.weight[i] = flux * (low + (x - real(k)) * (high - low))
         else:
-            out.group[i] = receivers.bands + photons.emitter[slot]
+            out.group[i] = receivers.bands + i % DEALS
             out.weight[i] = flux
+        out.lamp[i] = photons.emitter[slot]
 
     return collect
 
@@ -108,6 +114,7 @@ def make_reorder(precision: str) -> Any:
         out.weight[i] = source.weight[j]
         out.surface[i] = source.surface[j]
         out.group[i] = source.group[j]
+        out.lamp[i] = source.lamp[j]
 
     return reorder
 
@@ -146,9 +153,10 @@ def build_photon_map(
     """
     precision, device, count = compiled.precision, compiled.device, len(batch)
     loose = _allocate_map(precision, device, count, radius)
+    cell = CELLS_A_RADIUS * radius
     if count == 0:
         grid = wp.HashGrid(1, 1, 1, device=device, dtype=precision_types(precision).real)
-        grid.build(loose.position, radius, groups=loose.group)
+        grid.build(loose.position, cell, groups=loose.group)
         loose.grid = grid.id
         return PhotonMap(loose, grid, 0)
     ranges = cut_ranges(count, _RANGE_SIZE)
@@ -157,16 +165,16 @@ def build_photon_map(
     launch_ranges(
         make_collect(precision), ranges, lambda _: inputs, device=device, threads=threads
     )
-    grid = wp.HashGrid(*_grid_shape(loose.position, radius), device=device,
+    grid = wp.HashGrid(*_grid_shape(loose.position, cell), device=device,
                        dtype=precision_types(precision).real)
-    grid.build(loose.position, radius, groups=loose.group)
+    grid.build(loose.position, cell, groups=loose.group)
     loose.grid = grid.id
     sorted_map = _allocate_map(precision, device, count, radius)
     launch_ranges(
         make_reorder(precision), ranges, lambda _: [loose, sorted_map], device=device,
         threads=threads,
     )
-    grid.build(sorted_map.position, radius, groups=sorted_map.group)
+    grid.build(sorted_map.position, cell, groups=sorted_map.group)
     sorted_map.grid = grid.id
     return PhotonMap(sorted_map, grid, count)
 
@@ -180,19 +188,21 @@ def _allocate_map(precision: str, device: str, count: int, radius: float) -> Any
     data.weight = wp.empty(room, dtype=types.real, device=device)
     data.surface = wp.empty(room, dtype=int, device=device)
     data.group = wp.empty(room, dtype=int, device=device)
+    data.lamp = wp.empty(room, dtype=int, device=device)
     if count == 0:
         data.position.zero_()
         data.weight.zero_()
         data.surface.fill_(-1)
         data.group.zero_()
+        data.lamp.zero_()
     return data
 
 
-def _grid_shape(positions: Any, radius: float) -> tuple[int, int, int]:
+def _grid_shape(positions: Any, cell: float) -> tuple[int, int, int]:
     """Cells a side: as the photons extend. A flat receiver then has one layer, not three."""
     host = positions.numpy()
     extent = host.max(axis=0) - host.min(axis=0)
-    cells = np.clip(np.nan_to_num(extent / radius, posinf=1e9), 1, _MAX_CELLS_A_SIDE).astype(int)
+    cells = np.clip(np.nan_to_num(extent / cell, posinf=1e9), 1, _MAX_CELLS_A_SIDE).astype(int)
     while int(np.prod(cells)) > _MAX_CELLS:
         cells[np.argmax(cells)] //= 2
     return int(cells[0]), int(cells[1]), int(cells[2])

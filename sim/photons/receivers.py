@@ -2,9 +2,12 @@
 
 Photons fall into groups. One that has met a dispersive boundary is where it is because of its
 wavelength: its group is the band of that wavelength. Any other would be where it is at every
-wavelength: its group is its lamp's, and what it deposits is spread over the bands as the lamp's
+wavelength: what it deposits is spread over the bands as the lamp's
 spectrum and the receiver's reflectance say. That is the expectation over the wavelength it
 happens to carry, so light that no prism has touched has no colour noise at all.
+
+Undispersed photons are dealt out over `DEALS` groups in turn. A camera path of one band gathers
+one of them, times `DEALS`: the paths of a pixel's other bands see the others.
 """
 
 import functools
@@ -21,9 +24,12 @@ from sim.precision import precision_types
 from sim.scene_data import CompiledScene
 from spectra import EmissionSpectrum
 
-__all__ = ["compile_receivers", "make_receiver_structs"]
+__all__ = ["DEALS", "compile_receivers", "make_receiver_structs"]
 
 FloatArray = npt.NDArray[np.float64]
+
+DEALS = wp.constant(8)
+"""Groups over which undispersed photons are dealt."""
 
 _PARTS_A_BAND = 40
 """Parts of a band over which the product of spectrum and reflectance is summed."""
@@ -35,7 +41,7 @@ def make_receiver_structs(precision: str) -> SimpleNamespace:
 
     `reflectance[object, i]` holds at `first_nm + i` nm and is linear between; it is divided by
     π. `spread[lamp, object, band]` is the share of the lamp's flux in the band, times the
-    reflectance there over π. Groups: `bands` bands, then `lamps` lamps.
+    reflectance there over π. Groups: `bands` bands, then `DEALS`.
     """
     real = precision_types(precision).real
 

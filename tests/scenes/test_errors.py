@@ -48,8 +48,8 @@ def test_models_built_in_python_raise_the_same_exception() -> None:
 def test_nested_models_built_at_once_give_one_list_with_full_paths() -> None:
     with pytest.raises(SceneError) as caught:
         scenes.SceneObject(
-            shape={"type": "sphere", "position": (0, 0, 0), "radius": 0},  # type: ignore[arg-type]
-            material={"type": "lambertian", "reflectance": 2},  # type: ignore[arg-type]
+            shape={"type": "sphere", "position": (0, 0, 0), "radius": 0},
+            material={"type": "lambertian", "reflectance": 2},
         )
     assert [problem.path for problem in caught.value.problems] == [
         "shape.radius",

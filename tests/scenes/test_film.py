@@ -38,4 +38,4 @@ def test_a_band_width_that_is_the_spacing_is_accepted() -> None:
 )
 def test_bands_that_make_no_sense(fields: dict[str, object], message: str) -> None:
     with pytest.raises(SceneError, match=message):
-        Film(**fields)  # type: ignore[arg-type]
+        Film(**fields)

@@ -10,6 +10,13 @@ import scenes
 
 SCHEMA = scenes.schema()
 
+PYTHON_TYPES: dict[str, tuple[type, ...]] = {
+    "number": (int, float),
+    "integer": (int,),
+    "string": (str,),
+    "null": (type(None),),
+}
+
 
 def resolve(schema: dict[str, Any]) -> dict[str, Any]:
     reference = schema.get("$ref")
@@ -36,8 +43,7 @@ def matches(value: Any, schema: dict[str, Any]) -> bool:
     if kind == "array":
         items = schema.get("prefixItems") or [schema["items"]] * len(value)
         return isinstance(value, list) and all(map(matches, value, items))
-    types = {"number": (int, float), "integer": int, "string": str, "null": type(None)}
-    return isinstance(value, types[kind])
+    return isinstance(value, PYTHON_TYPES[kind])
 
 
 @pytest.mark.parametrize("name", scenes.gallery())

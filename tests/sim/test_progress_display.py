@@ -21,20 +21,18 @@ def report(**changes):
 
 
 def test_words():
-    # 2.5 million photons are left; at 2.05 million a second they take 1.2 s, rounded up.
     assert (
-        progress_text(report(), 2.05e6)
+        progress_text(report(), 2.05e6, 1.2)
         == "pass 3/8, trace: 1.5M of 4M photons, 2.05M/s, 2 s left"
     )
-    assert progress_text(report(), None) == "pass 3/8, trace: 1.5M of 4M photons"
+    assert progress_text(report(), None, None) == "pass 3/8, trace: 1.5M of 4M photons"
 
 
 @pytest.mark.parametrize(
-    ("left", "text"), [(0, "0 s left"), (59, "59 s left"), (61, "1 min 01 s left")]
+    ("left", "text"), [(0, "0 s left"), (58.2, "59 s left"), (61, "1 min 01 s left")]
 )
 def test_time_left(left, text):
-    shown = progress_text(report(photons_done=100 - left, photons_total=100), 1.0)
-    assert shown.endswith(text)
+    assert progress_text(report(), 1.0, left).endswith(f", {text}")
 
 
 def test_lines_come_with_each_new_stage_and_every_two_seconds():
@@ -61,6 +59,27 @@ def test_the_rate_leaves_out_what_came_before_the_first_photons():
     *_, last = stream.getvalue().splitlines()
     # (300 000 - 100 000) photons in 2 s; 3.7 million are left: 37 s.
     assert last == "pass 3/8, trace: 300k of 4M photons, 100k/s, 37 s left"
+
+
+def test_the_time_left_goes_by_the_passes_that_are_done():
+    stream = io.StringIO()
+    lines = ProgressLines(stream)
+    for pass_index, done, seconds in [(0, 1, 10.0), (0, 100, 12.0), (1, 100, 20.0), (1, 200, 24.0)]:
+        lines(report(pass_index=pass_index, photons_done=done, photons_total=800, seconds=seconds))
+    *_, last = stream.getvalue().splitlines()
+    # The first pass took 10 s, so the other seven take 70 s, of which 4 s have gone by. Meanwhile
+    # 199 photons in 14 s are 14.2 a second.
+    assert last.endswith("200 of 800 photons, 14.2/s, 1 min 06 s left")
+
+
+def test_a_single_pass_that_gathers_makes_no_promise():
+    stream = io.StringIO()
+    lines = ProgressLines(stream)
+    for stage, done, seconds in [("trace", 10, 1.0), ("gather", 100, 9.0)]:
+        lines(report(stage=stage, pass_index=0, passes=1, photons_done=done, photons_total=100,
+                     seconds=seconds))  # fmt: skip
+    *_, last = stream.getvalue().splitlines()
+    assert last == "pass 1/1, gather: 100 of 100 photons, 11.2/s"
 
 
 def test_anything_but_a_terminal_gets_plain_lines():

@@ -36,7 +36,8 @@ def test_svg_wavelengths_and_view(bench, capfd):
         (["--rays", "0"], ["rays: 0"]),
         (["--wavelengths", "150"], ["150", "N-BK7", "300"]),
         (["--wavelengths", "0.55"], ["0.55", "micrometres"]),
-        (["--wavelengths", "nan"], ["nan"]),
+        (["--wavelengths", "nan"], ["list of wavelengths", "'nan'"]),
+        (["--wavelengths", "550,-1"], ["list of wavelengths", "'550,-1'"]),
         (["-o", "missing/rays.png"], ["there is no folder"]),
     ],
 )

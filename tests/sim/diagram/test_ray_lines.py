@@ -25,6 +25,13 @@ def test_shared_segments_are_drawn_once_in_the_sum_of_their_colours():
     np.testing.assert_allclose(colours, [total / max(total.max(), 1.0), blue, red])
 
 
+def test_all_wavelengths_of_a_spectrum_together_are_white():
+    ends = np.linspace(-0.5, 0.5, 5)
+    paths = [fork(nm, end) for nm, end in zip((430, 490, 550, 600, 650), ends, strict=True)]
+    _, colours = ray_lines(paths, VIEW, reach=9.0, resolution=0.01)
+    np.testing.assert_allclose(colours[0], 1.0, rtol=1e-12)
+
+
 def test_segments_further_apart_than_the_resolution_stay_apart():
     paths = [fork(450.0, 0.0), fork(650.0, 0.1)]
     assert len(ray_lines(paths, VIEW, reach=9.0, resolution=0.05)[0]) == 3

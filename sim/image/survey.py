@@ -1,0 +1,132 @@
+"""A survey of what the camera sees: how wide pixels are there, and where it is.
+
+The widths set the gather radius. The points tell emission which part of a large receiver is in
+the picture.
+"""
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import warp as wp
+
+from sim.features import Features
+from sim.image.camera import make_camera_functions, make_camera_struct
+from sim.scene_data import CompiledScene
+from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+
+__all__ = ["Survey", "survey_view"]
+
+_GRID = 64
+_ENOUGH = 16
+_BOUNDARIES = wp.constant(16)
+
+
+@functools.cache
+def make_measure_footprints(precision: str, features: Features) -> Any:
+    """Kernel: width [m], place and object of sampled pixels on the receivers they see."""
+    transport = make_transport(precision, features)
+    real, vec3, interact = transport.real, transport.vec3, transport.interact
+    media_indices = transport.media_indices
+    scene_type, ray_type = transport.Scene, transport.Ray
+    camera_type, look = make_camera_struct(precision), make_camera_functions(precision)
+
+    @wp.kernel(module="unique", enable_backward=False)
+    def measure_footprints(
+        scene: scene_type,
+        camera: camera_type,
+        wavelength_nm: real,
+        samples: int,
+        out_width: wp.array(dtype=real),
+        out_point: wp.array(dtype=vec3),
+        out_prim: wp.array(dtype=int),
+    ):
+        i = wp.tid()
+        step = real(samples)
+        ray = ray_type()
+        ray.origin = camera.position
+        ray.direction = look(
+            camera,
+            (real(i % samples) + real(0.5)) / step * real(camera.width),
+            (real(i // samples) + real(0.5)) / step * real(camera.height),
+        )
+        # A pixel at the image's corner is smaller in angle: cos²θ of the axis, and 1/cosθ of
+        # the distance, leave the distance along the axis.
+        forward = wp.normalize(wp.cross(camera.step_down, camera.step_right))
+        pixel = wp.length(camera.step_right)
+        ray.prim = -1
+        ray.face = -1
+        indices = media_indices(scene, wavelength_nm)
+        axial = real(0.0)
+        out_prim[i] = -1
+        for boundary in range(_BOUNDARIES):
+            met = interact(scene, ray, indices)
+            axial += wp.abs(wp.dot(ray.direction, forward)) * met.t
+            if met.event == EVENT_DEPOSIT:
+                cos_theta = -wp.dot(ray.direction, met.normal)
+                # The footprint is an ellipse: the radius of the disc of equal area.
+                out_width[i] = pixel * axial / wp.sqrt(wp.max(cos_theta, real(0.05)))
+                out_point[i] = met.point
+                out_prim[i] = met.prim
+            if met.event != EVENT_BOUNDARY:
+                break
+            ray.origin = met.point
+            ray.prim = met.prim
+            ray.face = met.face
+            ray.direction = met.refracted
+            # One sample in four looks at what the glass reflects first.
+            if met.reflectance > real(0.5) or (boundary == 0 and i % 4 == 3):
+                ray.direction = met.reflected
+
+    return measure_footprints
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What a grid of sampled pixels sees.
+
+    Attributes:
+        widths: (n,) width of the pixel on the receiver [m].
+        points: (n, 3) where, in the local frame [m].
+        objects: (n,) which object.
+    """
+
+    widths: npt.NDArray[np.float64]
+    points: npt.NDArray[np.float64]
+    objects: npt.NDArray[np.int32]
+
+    def extent(self, prim: int, frame: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
+        """(2, 3) low and high of the visible part of an object along the rows of `frame`.
+
+        The outermost hundredth at either end is left out: a glance along a receiver to its
+        horizon must not stretch what is aimed at.
+        """
+        seen = self.points[self.objects == prim]
+        if len(seen) < _ENOUGH:
+            return None
+        low_and_high: npt.NDArray[np.float64] = np.quantile(seen @ frame.T, (0.01, 0.99), axis=0)
+        return low_and_high
+
+
+def survey_view(compiled: CompiledScene, camera: Any, wavelength_nm: float) -> Survey:
+    """Follow a grid of pixels to the receivers they see."""
+    types, device, count = compiled.structs, compiled.device, _GRID * _GRID
+    widths = wp.zeros(count, dtype=types.real, device=device)
+    points = wp.zeros(count, dtype=types.vec3, device=device)
+    objects = wp.zeros(count, dtype=int, device=device)
+    wp.launch(
+        make_measure_footprints(compiled.precision, compiled.features),
+        dim=count,
+        inputs=[compiled.data, camera, wavelength_nm, _GRID],
+        outputs=[widths, points, objects],
+        device=device,
+    )
+    prims = objects.numpy()
+    seen = (prims >= 0) & np.isfinite(widths.numpy())
+    return Survey(
+        widths.numpy()[seen].astype(np.float64),
+        points.numpy()[seen].astype(np.float64),
+        prims[seen],
+    )
