@@ -19,6 +19,9 @@ __all__ = ["Range", "cut_ranges", "launch_ranges"]
 Range = tuple[int, int]
 """(start, count) of the indices that one launch covers."""
 
+_PACKING = threading.Lock()
+"""Held while Warp's Python side prepares launches: two passes may be under way at once."""
+
 _POLL_S = 0.1
 """How often the waiting thread looks up, so that Ctrl-C is heard."""
 
@@ -35,6 +38,7 @@ def launch_ranges(
     *,
     device: str,
     threads: int,
+    stop: threading.Event | None = None,
     on_done: Callable[[int], None] | None = None,
 ) -> None:
     """Launch `kernel` once a range, `count` threads each, and wait for all.
@@ -45,28 +49,25 @@ def launch_ranges(
         inputs_of: maps a range's number to the kernel's remaining arguments.
         device: "cpu" or a CUDA device.
         threads: CPU threads; a GPU is fed from one thread.
+        stop: once set, from another thread, no further range is started and the call returns.
         on_done: told the number of finished indices after each range, from the calling thread.
 
     Raises:
         KeyboardInterrupt: within one range's time of Ctrl-C, all workers having stopped.
     """
-    # Recording loads the kernel's module and packs the arguments here, in one thread: only the
-    # native call is safe in several. (Loading it beforehand would compile it once more, for the
-    # block size of a GPU.)
-    commands = [
-        wp.launch(
-            kernel, dim=count, inputs=[start, *inputs_of(number)], device=device, record_cmd=True
-        )
-        for number, (start, count) in enumerate(ranges)
-    ]
+    # Recording loads the kernel's module and packs the arguments, which is safe in one thread at
+    # a time; only the native call is in several. (Loading the module beforehand would compile it
+    # once more, for the block size of a GPU.)
+    with _PACKING:
+        commands = _record(kernel, ranges, inputs_of, device)
     pending: queue.SimpleQueue[int] = queue.SimpleQueue()
     for number in range(len(ranges)):
         pending.put(number)
     finished: queue.SimpleQueue[int | BaseException] = queue.SimpleQueue()
-    stop = threading.Event()
+    halt = threading.Event() if stop is None else stop
 
     def work() -> None:
-        while not stop.is_set():
+        while not halt.is_set():
             try:
                 number = pending.get_nowait()
             except queue.Empty:
@@ -83,18 +84,33 @@ def launch_ranges(
     for thread in crew:
         thread.start()
     try:
-        _collect(ranges, finished, on_done)
+        _collect(ranges, finished, halt, on_done)
         if device != "cpu":
             wp.synchronize_device(device)
+    except BaseException:
+        halt.set()
+        raise
     finally:
-        stop.set()
         for thread in crew:
             thread.join()
+
+
+def _record(
+    kernel: Any, ranges: Sequence[Range], inputs_of: Callable[[int], list[Any]], device: str
+) -> list[Any]:
+    """A recorded launch for every range."""
+    return [
+        wp.launch(
+            kernel, dim=count, inputs=[start, *inputs_of(number)], device=device, record_cmd=True
+        )
+        for number, (start, count) in enumerate(ranges)
+    ]
 
 
 def _collect(
     ranges: Sequence[Range],
     finished: "queue.SimpleQueue[int | BaseException]",
+    halt: threading.Event,
     on_done: Callable[[int], None] | None,
 ) -> None:
     """Wait for every range; hand on the first error; tell `on_done` of progress."""
@@ -103,6 +119,8 @@ def _collect(
             try:
                 item = finished.get(timeout=_POLL_S)
             except queue.Empty:
+                if halt.is_set():
+                    return
                 continue
             break
         if isinstance(item, BaseException):

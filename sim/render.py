@@ -12,9 +12,12 @@ Reference:
     Graph. 30(3), eq. (15).
 """
 
+import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -28,7 +31,7 @@ from sim.image.picture import Picture
 from sim.image.survey import Survey, survey_view
 from sim.photons.energy import EnergyBooks
 from sim.photons.lamps import Lamps, compile_lamps
-from sim.photons.photon_map import build_photon_map
+from sim.photons.photon_map import PhotonMap, build_photon_map
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import Progress, ProgressCallback
@@ -42,7 +45,7 @@ FOOTPRINTS_A_RADIUS = 3.0
 
 
 class _Watch:
-    """Adds up the seconds of each stage and passes progress on."""
+    """Adds up the seconds of each stage, which may overlap, and passes progress on."""
 
     def __init__(self, settings: ResolvedSettings, tell: ProgressCallback | None) -> None:
         self.start = time.perf_counter()
@@ -52,18 +55,21 @@ class _Watch:
         self.photons_done = 0
         self.pass_index = 0
         self.stage = ""
+        self.lock = threading.Lock()
 
     @contextmanager
     def timing(self, stage: str) -> Iterator[None]:
         """Time a stage, under its name."""
-        self.stage = stage
+        with self.lock:
+            self.stage = stage
         self.report()
         start = time.perf_counter()
         try:
             yield
         finally:
             spent = time.perf_counter() - start
-            self.timings[stage] = self.timings.get(stage, 0.0) + spent
+            with self.lock:
+                self.timings[stage] = self.timings.get(stage, 0.0) + spent
 
     def count_photons(self, photons: int) -> None:
         """More photons are done."""
@@ -71,8 +77,10 @@ class _Watch:
         self.report()
 
     def report(self, _done: int = 0) -> None:
-        """Tell the callback how far the run is."""
-        if self.tell is not None:
+        """Tell the callback how far the run is, one thread at a time."""
+        if self.tell is None:
+            return
+        with self.lock:
             self.tell(
                 Progress(
                     stage=self.stage,
@@ -116,17 +124,18 @@ def render(
         assert scene.camera is not None  # require_renderable has seen to it
         camera = compile_camera(compiled, scene.camera, scene.film)
         survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
-        lamps = compile_lamps(compiled, edges_nm, plan.photons, visible=survey.extent)
+        lamps = compile_lamps(compiled, edges_nm, plan.photons, view=survey)
         receivers = compile_receivers(compiled, lamps, edges_nm)
         film = create_film(
             scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device
         )
         radius = plan.radius or gather_radius(survey)
+    studio = _Studio(compiled, lamps, receivers, camera, plan, radius, watch)
     books = []
-    for pass_index in range(plan.passes):
-        watch.pass_index = pass_index
-        pass_radius = radius * radius_shrinkage(pass_index, plan.alpha)
-        books.append(_render_pass(compiled, lamps, receivers, camera, film, plan, pass_radius, watch))
+    for pass_index, (photon_map, pass_books) in enumerate(studio.photon_maps()):
+        books.append(pass_books)
+        with watch.timing("gather"):
+            studio.expose(film, photon_map, pass_index)
     return Picture(
         spectral_radiance=film.radiance(),
         standard_error=film.standard_error(),
@@ -157,41 +166,73 @@ def gather_radius(survey: Survey) -> float:
     return FOOTPRINTS_A_RADIUS * float(np.median(survey.widths))
 
 
-def _render_pass(
-    compiled: CompiledScene,
-    lamps: Lamps,
-    receivers: Any,
-    camera: Any,
-    film: Film,
-    plan: ResolvedSettings,
-    radius: float,
-    watch: _Watch,
-) -> EnergyBooks:
-    """Emit and trace photons, map them, and expose the film to them once."""
-    with watch.timing("trace photons"):
-        batch = trace_photons(
-            compiled,
-            lamps,
-            seed=plan.seed,
-            pass_index=watch.pass_index,
-            max_interactions=plan.max_interactions,
-            threads=plan.threads,
-            on_done=watch.count_photons,
-        )
-    with watch.timing("build photon map"):
-        photon_map = build_photon_map(
-            compiled, batch, receivers, radius, threads=plan.threads
-        )
-    with watch.timing("gather"):
+@dataclass(frozen=True)
+class _Studio:
+    """All that the passes of one run share."""
+
+    compiled: CompiledScene
+    lamps: Lamps
+    receivers: Any
+    camera: Any
+    plan: ResolvedSettings
+    radius: float
+    watch: _Watch
+
+    def photon_maps(self) -> Iterator[tuple[PhotonMap, EnergyBooks]]:
+        """The photon map of each pass, in order, and its energy books.
+
+        The next map is made while the caller gathers from this one: building a grid is serial,
+        and would leave the other cores idle.
+        """
+        stop = threading.Event()
+        with ThreadPoolExecutor(1) as workshop:
+            try:
+                coming = workshop.submit(self._photon_map, 0, stop)
+                for pass_index in range(self.plan.passes):
+                    ready = coming.result()
+                    if pass_index + 1 < self.plan.passes:
+                        coming = workshop.submit(self._photon_map, pass_index + 1, stop)
+                    yield ready
+            finally:
+                stop.set()
+
+    def _photon_map(
+        self, pass_index: int, stop: threading.Event
+    ) -> tuple[PhotonMap, EnergyBooks]:
+        """Emit and trace the photons of one pass, and map them."""
+        with self.watch.timing("trace photons"):
+            batch = trace_photons(
+                self.compiled,
+                self.lamps,
+                seed=self.plan.seed,
+                pass_index=pass_index,
+                max_interactions=self.plan.max_interactions,
+                threads=self.plan.threads,
+                stop=stop,
+                on_done=self.watch.count_photons,
+            )
+        with self.watch.timing("build photon map"):
+            photon_map = build_photon_map(
+                self.compiled,
+                batch,
+                self.receivers,
+                self.radius * radius_shrinkage(pass_index, self.plan.alpha),
+                threads=self.plan.threads,
+                stop=stop,
+            )
+        return photon_map, batch.books
+
+    def expose(self, film: Film, photon_map: PhotonMap, pass_index: int) -> None:
+        """Expose the film to one pass."""
+        self.watch.pass_index = pass_index
         expose(
             film,
-            compiled,
-            camera,
+            self.compiled,
+            self.camera,
             photon_map,
-            receivers,
-            seed=plan.seed,
-            pass_index=watch.pass_index,
-            threads=plan.threads,
-            on_done=watch.report,
+            self.receivers,
+            seed=self.plan.seed,
+            pass_index=pass_index,
+            threads=self.plan.threads,
+            on_done=self.watch.report,
         )
-    return batch.books

@@ -103,7 +103,9 @@ def compile_scene(
     places = _fill_shapes(data, scene, origin, precision, device)
     rows = [
         (*place, *material)
-        for place, material in zip(places, _materials(scene, media, medium_of), strict=True)
+        for place, material in zip(
+            places, _materials(scene, media, medium_of, air_powers), strict=True
+        )
     ]
     data.bodies = struct_array(structs.Body, rows, device)
     _fill_media(data, media, air_powers, precision, device)
@@ -234,14 +236,15 @@ def _collect_media(scene: scenes.Scene) -> tuple[list[Medium], list[int], list[i
 
 
 def _materials(
-    scene: scenes.Scene, media: list[Medium], medium_of: list[int]
+    scene: scenes.Scene, media: list[Medium], medium_of: list[int], air_powers: list[int]
 ) -> list[tuple[int, int, int, int]]:
     """Each object's material, media outside and inside, and whether its boundary disperses."""
+    # Air disperses too, and is a factor of the indices that are converted.
+    varies = [m.is_dispersive or power != 0 for m, power in zip(media, air_powers, strict=True)]
     rows = []
     for item, medium in zip(scene.objects, medium_of, strict=True):
         if isinstance(item.material, scenes.Dielectric):
-            disperses = media[medium].is_dispersive or media[0].is_dispersive
-            rows.append((int(DIELECTRIC), 0, medium, int(disperses)))
+            rows.append((int(DIELECTRIC), 0, medium, int(varies[medium] or varies[0])))
         elif isinstance(item.material, scenes.Lambertian):
             rows.append((int(LAMBERTIAN), 0, 0, 0))
         else:

@@ -89,7 +89,7 @@ def _traced(
     scene: Scene, rays: int, wavelengths_nm: Sequence[float], seed: int
 ) -> list[DrawnPath]:
     from sim.diagram.ray_lines import DrawnPath
-    from sim.photons.emission import representative_rays
+    from sim.photons.representative import representative_rays
     from sim.single_ray import trace_ray
 
     origins, directions = representative_rays(scene, rays, seed)

@@ -103,12 +103,19 @@ def intersect_rim(
     half_b = origin[0] * direction[0] + origin[1] * direction[1]
     t0 = type(radius)(-1.0)
     t1 = type(radius)(-1.0)
-    if leaving:
-        if a != zero:
-            t1 = -(half_b + half_b) / a
-    else:
-        c = origin[0] * origin[0] + origin[1] * origin[1] - radius * radius
-        t0, t1 = quadratic_roots(a, half_b, c)
+    if a > zero:
+        shift = -half_b / a
+        if leaving:
+            t1 = shift + shift
+        else:
+            # From its closest approach to the axis, as with spheres, the chord keeps its digits.
+            x = origin[0] + direction[0] * shift
+            y = origin[1] + direction[1] * shift
+            room = radius * radius - x * x - y * y
+            if room >= zero:
+                half_chord = wp.sqrt(room / a)
+                t0 = shift - half_chord
+                t1 = shift + half_chord
     z0 = origin[2] + direction[2] * t0
     if t0 >= zero and t0 < type(radius)(wp.inf) and z0 >= z_low and z0 <= z_high:
         return t0

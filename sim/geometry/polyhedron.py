@@ -31,6 +31,7 @@ def intersect_polyhedron(
     t_exit = type(origin[0])(wp.inf)
     face_enter = int(-1)
     face_exit = int(-1)
+    leaves = leaving_face >= first and leaving_face < first + count
     for face in range(first, first + count):
         plane = planes[face]
         approach = wp.dot(plane.normal, direction)
@@ -48,10 +49,12 @@ def intersect_polyhedron(
             if t < t_exit:
                 t_exit = t
                 face_exit = face
-        elif distance < zero:
+        elif distance < zero and not leaves:
+            # Parallel to a face and beyond it: a miss. (A start on an edge can lie beyond one of
+            # its faces by rounding, and is inside all the same.)
             t_exit = -type(origin[0])(wp.inf)
 
-    if leaving_face >= first and leaving_face < first + count:
+    if leaves:
         if face_exit < 0 or t_exit == -type(origin[0])(wp.inf):
             return type(origin[0])(-1.0), -1
         # On an edge rounding can put the exit a hair behind the start: it is here.

@@ -97,17 +97,17 @@ class Survey:
     points: npt.NDArray[np.float64]
     objects: npt.NDArray[np.int32]
 
-    def extent(self, prim: int, frame: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
-        """(2, 3) low and high of the visible part of an object along the rows of `frame`.
+    def fraction(self, prim: int) -> float:
+        """Fraction of the samples that see a receiver which see this one."""
+        return float(np.mean(self.objects == prim)) if len(self.objects) else 0.0
 
-        The outermost hundredth at either end is left out: a glance along a receiver to its
-        horizon must not stretch what is aimed at.
-        """
+    def extent(self, prim: int, frame: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
+        """(2, 3) low and high of the visible part of an object along the rows of `frame`."""
         seen = self.points[self.objects == prim]
         if len(seen) < _ENOUGH:
             return None
-        low_and_high: npt.NDArray[np.float64] = np.quantile(seen @ frame.T, (0.01, 0.99), axis=0)
-        return low_and_high
+        along = seen @ frame.T
+        return np.stack([along.min(axis=0), along.max(axis=0)])
 
 
 def survey_view(compiled: CompiledScene, camera: Any, wavelength_nm: float) -> Survey:

@@ -1,8 +1,7 @@
 """The scene's emitters as device arrays, and how many photons each sends where."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -30,18 +29,33 @@ __all__ = ["Lamps", "Stream", "compile_lamps"]
 
 FloatArray = npt.NDArray[np.float64]
 
-Visible = Callable[[int, FloatArray], FloatArray | None]
-"""(object, frame) to (2, 3): low and high of its visible part along the frame's rows, or None."""
+
+class View(Protocol):
+    """What a camera sees of each object: `sim.image.survey.Survey` is one."""
+
+    def extent(self, prim: int, frame: FloatArray) -> FloatArray | None:
+        """(2, 3) low and high of the visible part along the rows of `frame`, or None."""
+
+    def fraction(self, prim: int) -> float:
+        """Fraction of the picture in which the object is seen, directly or through glass."""
+
 
 Aim = tuple[Any, ...]
 """The fields of a Target, but for its number of photons."""
 
-SPECULAR_SHARE = 0.4
-RECEIVER_SHARE = 0.5
+SPECULAR_SHARE = 0.25
+RECEIVER_SHARE = 0.65
 """Shares of a lamp's photons aimed at specular objects and at receivers; the rest go as the lamp
 radiates. They divide effort, not light: any positive shares give the same expected picture."""
 
-VISIBLE_MARGIN = 0.05
+SMALLEST_WEIGHT = 0.05
+"""A receiver's weight among the others is the fraction of the picture it fills, but at least this:
+what the camera barely sees may still be somebody's measurement."""
+
+VISIBLE_SHARE = 0.85
+"""Share of a receiver's photons that are aimed at its visible part, if that is aimed at."""
+
+VISIBLE_MARGIN = 0.02
 """Added on each side of a receiver's visible part, as a fraction of its size."""
 
 VISIBLE_WORTH = 0.7
@@ -84,7 +98,7 @@ def compile_lamps(
     edges_nm: FloatArray,
     photons: int,
     *,
-    visible: Visible | None = None,
+    view: View | None = None,
 ) -> Lamps:
     """Lay the emitters out and share `photons` among them and their targets.
 
@@ -92,8 +106,7 @@ def compile_lamps(
         compiled: the scene.
         edges_nm: band edges of the film; light outside of them is not emitted.
         photons: photons of one pass.
-        visible: tells which part of a receiver the camera sees, so that most of the photons
-            aimed at the receiver are aimed there; None: no camera.
+        view: what the camera sees, so that most photons are aimed there; None: no camera.
     """
     scene, structs = compiled.scene, make_lamp_structs(compiled.precision)
     emitters: list[tuple[Any, ...]] = []
@@ -107,7 +120,7 @@ def compile_lamps(
         if spectrum is None or counts[row] == 0:
             continue
         shining.append(spectrum)
-        aims = _find_targets(compiled, emitter, visible)
+        aims = _find_targets(compiled, emitter, view)
         pieces = _segments(spectrum)
         shares = _share(counts[row], [share for share, _ in aims])
         first = len(targets)
@@ -146,12 +159,16 @@ def _fractions(spectra: list[tuple[EmissionSpectrum | None, float]]) -> list[flo
 
 
 def _share(total: int, weights: list[float]) -> list[int]:
-    """Whole numbers in proportion to `weights` that add up to `total`, none of them zero if
-    `total` allows it: a target without photons would leave its light to the others' weights."""
+    """Whole numbers in proportion to `weights` that add up to `total`, none of them zero.
+
+    A target without photons would leave its light to the others' weights, so where `total` is
+    smaller than the number of weights, each still gets one.
+    """
     scaled = np.asarray(weights) / np.sum(weights) * total
     counts = np.maximum(np.floor(scaled).astype(int), 1)
-    counts[np.argmax(counts)] += total - counts.sum()
-    return [int(count) for count in np.maximum(counts, 0)]
+    largest = np.argmax(counts)
+    counts[largest] = max(1, counts[largest] + total - counts.sum())
+    return [int(count) for count in counts]
 
 
 def _segments(spectrum: EmissionSpectrum) -> list[tuple[float, ...]]:
@@ -195,7 +212,7 @@ def _emitter_row(compiled: CompiledScene, emitter: Any) -> tuple[Any, ...]:
 
 
 def _find_targets(
-    compiled: CompiledScene, emitter: Any, visible: Visible | None
+    compiled: CompiledScene, emitter: Any, view: View | None
 ) -> list[tuple[float, Aim]]:
     """(share of photons, Target fields but the count); the lamp's own distribution first."""
     base = (int(AIM_BASE), np.zeros(3), np.eye(3), 0.0, 0.0, 0.0)
@@ -204,19 +221,21 @@ def _find_targets(
     # A spherical lamp draws cones from its centre: what its rays can hit is larger by its radius.
     margin = emitter.radius if isinstance(emitter, scenes.SphereLamp) else 0.0
     specular: list[Aim] = []
-    receivers: list[Aim] = []
+    receivers: list[tuple[float, Aim]] = []
     for prim, item in enumerate(compiled.scene.objects):
         if isinstance(item.shape, scenes.Plane):
             continue  # without end, so there is nothing to aim at
         if isinstance(item.material, scenes.Dielectric):
             specular.append(_cone(compiled, item.shape, margin))
         elif isinstance(item.material, scenes.Lambertian):
+            weight = 1.0 if view is None else max(view.fraction(prim), SMALLEST_WEIGHT)
             if isinstance(item.shape, scenes.Rectangle):
-                receivers.extend(_areas(compiled, item.shape, prim, visible))
+                receivers.extend(_areas(compiled, item.shape, prim, weight, view))
             else:
-                receivers.append(_cone(compiled, item.shape, margin))
+                receivers.append((weight, _cone(compiled, item.shape, margin)))
     aims = [(SPECULAR_SHARE / len(specular), aim) for aim in specular]
-    aims += [(RECEIVER_SHARE / len(receivers), aim) for aim in receivers]
+    total = sum(weight for weight, _ in receivers)
+    aims += [(RECEIVER_SHARE * weight / total, aim) for weight, aim in receivers]
     return [(1.0 - SPECULAR_SHARE - RECEIVER_SHARE, base), *aims]
 
 
@@ -227,14 +246,14 @@ def _cone(compiled: CompiledScene, shape: Any, margin: float) -> Aim:
 
 
 def _areas(
-    compiled: CompiledScene, shape: scenes.Rectangle, prim: int, visible: Visible | None
-) -> list[Aim]:
-    """A rectangle, and the part of it that the camera sees if that is much smaller."""
+    compiled: CompiledScene, shape: scenes.Rectangle, prim: int, weight: float, view: View | None
+) -> list[tuple[float, Aim]]:
+    """A rectangle, and the part of it that the camera sees if that is much smaller; each with its weight."""
     frame = np.stack(shape.frame())
     centre = compiled.to_local(shape.position)
     half = 0.5 * np.asarray(shape.size)
-    areas: list[Aim] = [(int(AIM_AREA), centre, frame, half[0], half[1], 0.0)]
-    extent = None if visible is None else visible(prim, frame)
+    whole: Aim = (int(AIM_AREA), centre, frame, half[0], half[1], 0.0)
+    extent = None if view is None else view.extent(prim, frame)
     if extent is not None:
         middle = frame @ centre
         margin = VISIBLE_MARGIN * (extent[1] - extent[0])
@@ -243,6 +262,6 @@ def _areas(
         seen = 0.5 * (high - low)
         if np.all(seen > 0.0) and np.prod(seen) < VISIBLE_WORTH * np.prod(half):
             at = frame.T @ np.array([*(0.5 * (low + high)), middle[2]])
-            # Aimed at twice: the whole gets one share, its visible part three.
-            areas += [(int(AIM_AREA), at, frame, seen[0], seen[1], 0.0)] * 3
-    return areas
+            part: Aim = (int(AIM_AREA), at, frame, seen[0], seen[1], 0.0)
+            return [(weight * (1.0 - VISIBLE_SHARE), whole), (weight * VISIBLE_SHARE, part)]
+    return [(weight, whole)]

@@ -11,6 +11,7 @@ References:
 """
 
 import functools
+import threading
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
@@ -141,6 +142,7 @@ def build_photon_map(
     radius: float,
     *,
     threads: int,
+    stop: threading.Event | None = None,
 ) -> PhotonMap:
     """Sort one pass's photons into a grid of cells as wide as the gather radius.
 
@@ -150,6 +152,7 @@ def build_photon_map(
         receivers: the device-side Receivers struct.
         radius: of the gather [m].
         threads: CPU threads.
+        stop: once set, from another thread, building ends; the map is then unusable.
     """
     precision, device, count = compiled.precision, compiled.device, len(batch)
     loose = _allocate_map(precision, device, count, radius)
@@ -163,7 +166,7 @@ def build_photon_map(
     slots = wp.array(batch.slots, dtype=int, device=device)
     inputs = [batch.data, slots, receivers, loose]
     launch_ranges(
-        make_collect(precision), ranges, lambda _: inputs, device=device, threads=threads
+        make_collect(precision), ranges, lambda _: inputs, device=device, threads=threads, stop=stop
     )
     grid = wp.HashGrid(*_grid_shape(loose.position, cell), device=device,
                        dtype=precision_types(precision).real)
@@ -172,7 +175,7 @@ def build_photon_map(
     sorted_map = _allocate_map(precision, device, count, radius)
     launch_ranges(
         make_reorder(precision), ranges, lambda _: [loose, sorted_map], device=device,
-        threads=threads,
+        threads=threads, stop=stop,
     )
     grid.build(sorted_map.position, cell, groups=sorted_map.group)
     sorted_map.grid = grid.id

@@ -10,6 +10,7 @@ References:
 """
 
 import functools
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -257,6 +258,7 @@ def trace_photons(
     pass_index: int,
     max_interactions: int,
     threads: int,
+    stop: threading.Event | None = None,
     on_done: Callable[[int], None] | None = None,
 ) -> PhotonBatch:
     """Emit and trace one pass of photons.
@@ -268,6 +270,7 @@ def trace_photons(
         pass_index: which pass: it alone decides the scramble.
         max_interactions: surfaces that one photon and all its branches may meet.
         threads: CPU threads.
+        stop: once set, from another thread, tracing ends; the batch is then incomplete.
         on_done: told of finished photons.
     """
     lamps.seed(compiled.device, seed, pass_index)
@@ -278,7 +281,7 @@ def trace_photons(
             room = count * _SLOTS_PER_PHOTON
             shares.append(_Share(row, start, count, slot, room))
             slot += room
-    run = _Run(compiled, lamps, seed, pass_index, max_interactions, threads)
+    run = _Run(compiled, lamps, seed, pass_index, max_interactions, threads, stop)
     photons, counts, books = run.trace(shares, slot, on_done)
     short = [i for i, share in enumerate(shares) if counts[i] > share.slot_count]
     if short:
@@ -307,6 +310,7 @@ class _Run:
     pass_index: int
     max_interactions: int
     threads: int
+    stop: threading.Event | None
 
     def trace(
         self, shares: list[_Share], slots: int, on_done: Callable[[int], None] | None
@@ -328,6 +332,7 @@ class _Run:
             inputs_of,
             device=device,
             threads=self.threads,
+            stop=self.stop,
             on_done=on_done,
         )
         return photons, counts.numpy(), books.numpy()
