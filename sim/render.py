@@ -127,7 +127,8 @@ def render(
         lamps = compile_lamps(compiled, edges_nm, plan.photons, view=survey)
         receivers = compile_receivers(compiled, lamps, edges_nm)
         film = create_film(
-            scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device
+            scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device,
+            passes=plan.passes,
         )
         radius = plan.radius or gather_radius(survey)
     studio = _Studio(compiled, lamps, receivers, camera, plan, radius, watch)

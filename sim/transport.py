@@ -18,7 +18,7 @@ import warp as wp
 
 from sim.features import Features
 from sim.geometry.flat import intersect_plane, plane_coordinates
-from sim.geometry.lens import cap_normal, intersect_cap, intersect_rim
+from sim.geometry.lens import intersect_lens, lens_normal
 from sim.geometry.polyhedron import intersect_polyhedron
 from sim.geometry.sphere import intersect_sphere
 from sim.optics.dielectric import (
@@ -48,10 +48,6 @@ EVENT_DEPOSIT = wp.constant(2)
 """A diffuse surface: the photon is stored, the camera path gathers."""
 EVENT_ABSORB = wp.constant(3)
 """An absorber: the light ends here."""
-
-FRONT_FACE = wp.constant(0)
-BACK_FACE = wp.constant(1)
-RIM_FACE = wp.constant(2)
 
 
 @functools.cache
@@ -102,48 +98,6 @@ def make_intersect(precision: str, features: Features):
     structs = make_scene_structs(precision)
     real, vec3 = structs.real, structs.vec3
     scene_type, ray_type, hit_type = structs.Scene, structs.Ray, structs.Hit
-    lens_type = structs.Lens
-
-    @wp.func
-    def intersect_lens(lens: lens_type, ray: ray_type):
-        """Distance (−1 for none), face, and point in the lens's frame."""
-        leaving_face = int(-1)
-        if ray.prim == lens.prim:
-            leaving_face = ray.face
-        origin = lens.frame * (ray.origin - lens.centre)
-        direction = lens.frame * ray.direction
-        half = vec3(real(0.0), real(0.0), lens.half_thickness)
-        t_front = intersect_cap(
-            origin + half, direction, lens.curvature_front, lens.one_plus_conic_front,
-            lens.rho2_limit, leaving_face == FRONT_FACE,
-        )
-        t_back = intersect_cap(
-            origin - half, direction, lens.curvature_back, lens.one_plus_conic_back,
-            lens.rho2_limit, leaving_face == BACK_FACE,
-        )
-        t_rim = intersect_rim(
-            origin, direction, lens.radius, lens.rim_low, lens.rim_high, leaving_face == RIM_FACE
-        )
-        t = t_front
-        face = int(FRONT_FACE)
-        if t_back >= real(0.0) and (t < real(0.0) or t_back < t):
-            t = t_back
-            face = BACK_FACE
-        if t_rim >= real(0.0) and (t < real(0.0) or t_rim < t):
-            t = t_rim
-            face = RIM_FACE
-        return t, face, origin + direction * t
-
-    @wp.func
-    def lens_normal(lens: lens_type, face: int, point: vec3):
-        """Outward unit normal at a point of the lens in its frame, in the scene's frame."""
-        normal = vec3(point[0], point[1], real(0.0))
-        half = vec3(real(0.0), real(0.0), lens.half_thickness)
-        if face == FRONT_FACE:
-            normal = cap_normal(point + half, lens.curvature_front, lens.one_plus_conic_front)
-        elif face == BACK_FACE:
-            normal = -cap_normal(point - half, lens.curvature_back, lens.one_plus_conic_back)
-        return wp.normalize(wp.transpose(lens.frame) * normal)
 
     @wp.func
     def intersect(scene: scene_type, ray: ray_type):
@@ -193,12 +147,18 @@ def make_intersect(precision: str, features: Features):
         if wp.static(features.lenses):
             for i in range(scene.lens_count):
                 lens = scene.lenses[i]
-                t, face, point = intersect_lens(lens, ray)
+                leaving_face = -1
+                if ray.prim == lens.prim:
+                    leaving_face = ray.face
+                origin = lens.frame * (ray.origin - lens.centre)
+                direction = lens.frame * ray.direction
+                t, face = intersect_lens(lens, origin, direction, leaving_face)
                 if t >= real(0.0) and t < hit.t:
                     hit.t = t
                     hit.prim = lens.prim
                     hit.face = face
-                    hit.normal = lens_normal(lens, face, point)
+                    normal = lens_normal(lens, face, origin + direction * t)
+                    hit.normal = wp.normalize(wp.transpose(lens.frame) * normal)
         return hit
 
     return intersect
@@ -226,6 +186,8 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         """Total or not, reflectance, and the two directions at a boundary of relative index η."""
         cos_theta_i = wp.min(-wp.dot(direction, normal), real(1.0))
         reflected = reflect(direction, normal, cos_theta_i)
+        if eta == real(1.0):
+            return 0, real(0.0), reflected, direction  # exactly, at any angle
         sin2_t = sin2_theta_t(cos_theta_i, eta)
         if sin2_t >= real(1.0):
             return 1, real(1.0), reflected, reflected

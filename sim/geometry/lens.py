@@ -4,6 +4,9 @@ The axis is z and the frame's origin lies midway between the two vertices. A cap
 curvature c and conic constant κ is the sheet through its vertex of
 ``F = c (x² + y² + (1 + κ) z²) − 2 z = 0``, which is a plane at c = 0: no special case.
 
+A ray that has entered the glass goes out where it first passes one of the two caps or the
+cylinder (`exit_cap`, `exit_rim`), whatever their edges: there is no seam to slip through.
+
 Reference:
     Welford (1986), *Aberrations of Optical Systems*, §4.2: quadrics in vertex form.
     Press et al. (2007), *Numerical Recipes*, §5.6: roots of a quadratic without cancellation.
@@ -13,12 +16,27 @@ from typing import Any
 
 import warp as wp
 
-__all__ = ["cap_normal", "intersect_cap", "intersect_rim"]
+__all__ = [
+    "BACK_FACE",
+    "FRONT_FACE",
+    "RIM_FACE",
+    "cap_normal",
+    "exit_cap",
+    "exit_rim",
+    "intersect_cap",
+    "intersect_lens",
+    "intersect_rim",
+    "lens_normal",
+]
+
+FRONT_FACE = wp.constant(0)
+BACK_FACE = wp.constant(1)
+RIM_FACE = wp.constant(2)
 
 
 @wp.func
 def quadratic_roots(a: Any, half_b: Any, c: Any):
-    """Roots of a t² + 2 b t + c in ascending order; (inf, inf) for none, inf for one at infinity."""
+    """Roots of a t² + 2 b t + c in ascending order; inf for one that is not there."""
     zero = type(a)(0.0)
     infinity = type(a)(wp.inf)
     discriminant = half_b * half_b - a * c
@@ -39,12 +57,16 @@ def quadratic_roots(a: Any, half_b: Any, c: Any):
 
 
 @wp.func
+def on_sheet(z: Any, curvature: Any, one_plus_conic: Any):
+    """Whether a height is on the vertex's sheet, not an ellipsoid's far half or a second sheet."""
+    return one_plus_conic * curvature * z <= type(z)(1.0)
+
+
+@wp.func
 def on_cap(point: Any, curvature: Any, one_plus_conic: Any, rho2_limit: Any):
     """Whether a point of the quadric lies on the sheet of its vertex and inside the aperture."""
-    zero = type(rho2_limit)(0.0)
     rho2 = point[0] * point[0] + point[1] * point[1]
-    above = type(rho2_limit)(1.0) - one_plus_conic * curvature * point[2]
-    return rho2 <= rho2_limit and above >= zero
+    return rho2 <= rho2_limit and on_sheet(point[2], curvature, one_plus_conic)
 
 
 @wp.func
@@ -127,6 +149,69 @@ def intersect_rim(
 
 
 @wp.func
+def exit_cap(
+    origin: Any, direction: Any, curvature: Any, one_plus_conic: Any, outward: Any, leaving: bool
+):
+    """Distance at which a ray inside the glass goes out through a cap, or −1.
+
+    `outward` is 1 where the outside is F > 0 (a front cap), −1 where it is F < 0. Going out, a
+    ray passes the root at which `outward` · F rises. `leaving`: it starts on this cap.
+    """
+    zero = type(curvature)(0.0)
+    none = type(curvature)(-1.0)
+    shift = -wp.dot(origin, direction)
+    if leaving:
+        shift = zero
+    start = origin + direction * shift
+    c = curvature * outward
+    bulge = one_plus_conic * c
+    a = c * (direction[0] * direction[0] + direction[1] * direction[1])
+    a += bulge * direction[2] * direction[2]
+    half_b = c * (start[0] * direction[0] + start[1] * direction[1])
+    half_b += bulge * start[2] * direction[2] - outward * direction[2]
+    t = none
+    if leaving:
+        if a > zero:
+            t = -(half_b + half_b) / a
+    else:
+        f = c * (start[0] * start[0] + start[1] * start[1])
+        f += bulge * start[2] * start[2] - outward * (start[2] + start[2])
+        discriminant = half_b * half_b - a * f
+        if a > zero:
+            discriminant = wp.max(discriminant, zero)  # by rounding alone: it is inside
+        if discriminant < zero:
+            return none
+        root = wp.sqrt(discriminant)
+        if half_b > zero:
+            t = shift - f / (half_b + root)
+        elif a != zero:
+            t = shift + (root - half_b) / a
+        # A start on the edge of another face can lie outside by rounding: it is out already.
+        is_rising = half_b > a * shift
+        if t < zero and is_rising and on_sheet(origin[2], curvature, one_plus_conic):
+            return zero
+    if t < zero or not on_sheet(origin[2] + direction[2] * t, curvature, one_plus_conic):
+        return none
+    return t
+
+
+@wp.func
+def exit_rim(origin: Any, direction: Any, radius: Any, leaving: bool):
+    """Distance at which a ray inside the cylinder of `radius` about z goes out, or −1."""
+    zero = type(radius)(0.0)
+    a = direction[0] * direction[0] + direction[1] * direction[1]
+    if a == zero:
+        return type(radius)(-1.0)
+    shift = -(origin[0] * direction[0] + origin[1] * direction[1]) / a
+    if leaving:
+        return shift + shift
+    x = origin[0] + direction[0] * shift
+    y = origin[1] + direction[1] * shift
+    room = wp.max(radius * radius - x * x - y * y, zero)
+    return wp.max(shift + wp.sqrt(room / a), zero)
+
+
+@wp.func
 def cap_normal(point: Any, curvature: Any, one_plus_conic: Any):
     """Unit normal of a cap at a point relative to its vertex, toward −z at the vertex."""
     gradient = type(point)(
@@ -135,3 +220,73 @@ def cap_normal(point: Any, curvature: Any, one_plus_conic: Any):
         one_plus_conic * curvature * point[2] - type(curvature)(1.0),
     )
     return wp.normalize(gradient)
+
+
+@wp.func
+def lens_normal(lens: Any, face: int, point: Any):
+    """Outward normal, of any length, at a point of a face; both in the lens's frame."""
+    half = type(point)(type(lens.radius)(0.0), type(lens.radius)(0.0), lens.half_thickness)
+    if face == FRONT_FACE:
+        return cap_normal(point + half, lens.curvature_front, lens.one_plus_conic_front)
+    if face == BACK_FACE:
+        return -cap_normal(point - half, lens.curvature_back, lens.one_plus_conic_back)
+    return type(point)(point[0], point[1], type(lens.radius)(0.0))
+
+
+@wp.func
+def lens_distances(lens: Any, origin: Any, direction: Any, leaving_face: int):
+    """Distances to the front, the back and the rim, −1 for none."""
+    zero = type(lens.radius)(0.0)
+    one = type(lens.radius)(1.0)
+    half = type(origin)(zero, zero, lens.half_thickness)
+    leaves_front = leaving_face == FRONT_FACE
+    leaves_back = leaving_face == BACK_FACE
+    leaves_rim = leaving_face == RIM_FACE
+    front = origin + half
+    back = origin - half
+    if leaving_face >= 0:
+        if wp.dot(lens_normal(lens, leaving_face, origin), direction) < zero:
+            return (
+                exit_cap(
+                    front, direction, lens.curvature_front, lens.one_plus_conic_front, one,
+                    leaves_front,
+                ),
+                exit_cap(
+                    back, direction, lens.curvature_back, lens.one_plus_conic_back, -one,
+                    leaves_back,
+                ),
+                exit_rim(origin, direction, lens.radius, leaves_rim),
+            )
+    return (
+        intersect_cap(
+            front, direction, lens.curvature_front, lens.one_plus_conic_front, lens.rho2_limit,
+            leaves_front,
+        ),
+        intersect_cap(
+            back, direction, lens.curvature_back, lens.one_plus_conic_back, lens.rho2_limit,
+            leaves_back,
+        ),
+        intersect_rim(origin, direction, lens.radius, lens.rim_low, lens.rim_high, leaves_rim),
+    )
+
+
+@wp.func
+def intersect_lens(lens: Any, origin: Any, direction: Any, leaving_face: int):
+    """Distance (−1 for none) and face of the first hit.
+
+    Args:
+        lens: struct with the lens's shape.
+        origin: in the lens's frame [m].
+        direction: unit, in the lens's frame.
+        leaving_face: the face the ray has just left, −1 for none.
+    """
+    zero = type(lens.radius)(0.0)
+    t, t_back, t_rim = lens_distances(lens, origin, direction, leaving_face)
+    face = int(FRONT_FACE)
+    if t_back >= zero and (t < zero or t_back < t):
+        t = t_back
+        face = BACK_FACE
+    if t_rim >= zero and (t < zero or t_rim < t):
+        t = t_rim
+        face = RIM_FACE
+    return t, face

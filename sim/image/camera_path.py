@@ -5,6 +5,9 @@ it meets a dispersive surface. If it met one, a path for each band follows, with
 drawn from the band, whose branches count only behind a dispersive surface. Bands are so never
 mixed behind a prism, and a pixel that sees no glass costs one path, not one for each band.
 
+Pixels behind glass are dear, so their bands take turns: with S turns a pass follows every S-th
+band, shifted from pixel to pixel, and S passes make one complete sample of the film.
+
 Radiance divided by the square of the index is constant along a ray: a refraction multiplies the
 throughput by (η_i/η_t)², seen along the camera ray.
 
@@ -44,7 +47,8 @@ STACK_SIZE = wp.constant(8)
 def make_film_struct() -> Any:
     """Struct Film: running mean and squared deviations of each pixel and band, one row a pixel.
 
-    `sample` is scratch for the pass being gathered.
+    `sample` holds the sample that the passes of one round of turns add up to; `turn` of `turns`
+    is the pass within the round, `rounds_before` counts complete ones.
     """
 
     @wp.struct
@@ -53,7 +57,9 @@ def make_film_struct() -> Any:
         mean: wp.array2d(dtype=wp.float64)
         squares: wp.array2d(dtype=wp.float64)
         pass_index: int
-        passes_before: int
+        turn: int
+        turns: int
+        rounds_before: int
         key: wp.uint64
 
     return Film
@@ -75,7 +81,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
     @wp.func
     def follow(
         scene: scene_type, photons: map_type, receivers: receivers_type, camera_ray: ray_type, band: int,
-        turn: int, wavelength_nm: real, key: wp.uint64, sample: wp.array2d(dtype=wp.float64), row: int,
+        deal: int, weight: real, wavelength_nm: real, key: wp.uint64, sample: wp.array2d(dtype=wp.float64), row: int,
     ):
         """Add one path's radiance to `sample[row]`; 1 if a branch met a dispersive surface."""
         indices = media_indices(scene, wavelength_nm)
@@ -85,7 +91,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
         depth = int(0)
         alive = bool(True)
         ray = camera_ray
-        throughput = real(1.0)
+        throughput = weight
         dispersed = int(0)
         met_dispersive = int(0)
         for step in range(MAX_INTERACTIONS):
@@ -144,7 +150,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 alive = False
                 if met.event == EVENT_DEPOSIT and (band < 0 or dispersed == 1):
                     gather(
-                        scene, photons, receivers, met, band, turn,
+                        scene, photons, receivers, met, band, deal,
                         throughput / receivers.band_width_nm, sample, row,
                     )
         return met_dispersive
@@ -159,8 +165,9 @@ def make_render_camera(precision: str, features: Features) -> Any:
         film: film_type,
     ):
         pixel = start + wp.tid()
-        for band in range(receivers.bands + receivers.lamps):
-            film.sample[pixel, band] = wp.float64(0.0)
+        if film.turn == 0:
+            for column in range(receivers.bands + receivers.lamps):
+                film.sample[pixel, column] = wp.float64(0.0)
         # R2 points over the passes, shifted at random for each pixel: every pixel's samples
         # are spread, and neighbours share no pattern.
         step = real(film.pass_index)
@@ -184,21 +191,25 @@ def make_render_camera(precision: str, features: Features) -> Any:
         key = hash64(film.key + wp.uint64(1), shift * wp.uint64(65536) + wp.uint64(film.pass_index))
         wavelength_nm = receivers.first_edge_nm + real(0.5) * receivers.band_width_nm * real(receivers.bands)
         dispersed = follow(
-            scene, photons, receivers, ray, -1, 0, wavelength_nm, key, film.sample, pixel
+            scene, photons, receivers, ray, -1, 0, real(1.0) / real(film.turns), wavelength_nm,
+            key, film.sample, pixel,
         )
         if dispersed == 1:
-            turn = int(key >> wp.uint64(33))
-            for band in range(receivers.bands):
-                wavelength_nm = receivers.first_edge_nm + receivers.band_width_nm * (real(band) + inside_band)
+            deal = int(key >> wp.uint64(33))
+            for band in range((pixel + film.turn) % film.turns, receivers.bands, film.turns):
+                wavelength_nm = receivers.first_edge_nm
+                wavelength_nm += receivers.band_width_nm * (real(band) + inside_band)
                 follow(
-                    scene, photons, receivers, ray, band, turn, wavelength_nm, key, film.sample, pixel
+                    scene, photons, receivers, ray, band, deal, real(1.0), wavelength_nm, key,
+                    film.sample, pixel,
                 )
-        weight = wp.float64(1.0) / wp.float64(film.passes_before + 1)
-        for band in range(receivers.bands):
-            value = film.sample[pixel, band]
-            delta = value - film.mean[pixel, band]
-            mean = film.mean[pixel, band] + delta * weight
-            film.mean[pixel, band] = mean
-            film.squares[pixel, band] += delta * (value - mean)
+        if film.turn == film.turns - 1:
+            share = wp.float64(1.0) / wp.float64(film.rounds_before + 1)
+            for band in range(receivers.bands):
+                value = film.sample[pixel, band]
+                delta = value - film.mean[pixel, band]
+                mean = film.mean[pixel, band] + delta * share
+                film.mean[pixel, band] = mean
+                film.squares[pixel, band] += delta * (value - mean)
 
     return render_camera

@@ -14,7 +14,7 @@ from sim.photons.photon_map import PhotonMap
 from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 
-__all__ = ["Film", "create_film", "expose"]
+__all__ = ["Film", "create_film", "expose", "turns_of"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,6 +33,7 @@ class Film:
         height, width: pixels.
         edges_nm: (bands + 1,) band edges [nm].
         data: the device-side Film struct.
+        turns: passes that make one complete sample; see `sim.image.camera_path`.
         passes: passes exposed so far.
     """
 
@@ -40,6 +41,7 @@ class Film:
     width: int
     edges_nm: FloatArray
     data: Any
+    turns: int = 1
     passes: int = 0
 
     @property
@@ -53,27 +55,48 @@ class Film:
         return mean
 
     def standard_error(self) -> FloatArray:
-        """One σ of the mean, same shape and unit; NaN from a single pass.
+        """One σ of the mean, same shape and unit; NaN from a single sample.
 
-        The passes are independent estimates: σ² = Σ(x − x̄)² / (n (n − 1)).
+        Rounds of `turns` passes are independent estimates: σ² = Σ(x − x̄)² / (n (n − 1)).
         """
-        if self.passes < 2:
+        rounds = self.passes // self.turns
+        if rounds < 2:
             return np.full(self.shape, np.nan)
         squares = self.data.squares.numpy().reshape(self.shape)
-        error: FloatArray = np.sqrt(squares / (self.passes * (self.passes - 1.0)))
+        error: FloatArray = np.sqrt(squares / (rounds * (rounds - 1.0)))
         return error
 
 
 def create_film(
-    height: int, width: int, edges_nm: FloatArray, lamps: int, device: str
+    height: int, width: int, edges_nm: FloatArray, lamps: int, device: str, *, passes: int
 ) -> Film:
-    """An unexposed film, with scratch for the sums of lamps beside those of the bands."""
+    """An unexposed film, with scratch for the sums of lamps beside those of the bands.
+
+    Args:
+        height, width: pixels.
+        edges_nm: (bands + 1,) band edges [nm].
+        lamps: emitters that shine.
+        device: where it lives.
+        passes: how many passes it will be exposed to.
+    """
     data = make_film_struct()()
     size = (height * width, len(edges_nm) - 1)
     data.sample = wp.zeros((size[0], size[1] + lamps), dtype=wp.float64, device=device)
     data.mean = wp.zeros(size, dtype=wp.float64, device=device)
     data.squares = wp.zeros(size, dtype=wp.float64, device=device)
-    return Film(height, width, np.asarray(edges_nm, dtype=np.float64), data)
+    return Film(height, width, np.asarray(edges_nm, dtype=np.float64), data, turns_of(passes))
+
+
+def turns_of(passes: int) -> int:
+    """Turns in which the bands behind glass are sampled: as many as leave enough replicates.
+
+    They divide the number of passes, so that every band is sampled equally often: colours stay
+    neutral exactly.
+    """
+    for turns, replicates in ((4, 8), (2, 4)):
+        if passes % turns == 0 and passes // turns >= replicates:
+            return turns
+    return 1
 
 
 def expose(
@@ -103,7 +126,8 @@ def expose(
     """
     data = film.data
     data.pass_index = pass_index
-    data.passes_before = film.passes
+    data.rounds_before, data.turn = divmod(film.passes, film.turns)
+    data.turns = film.turns
     data.key = fold_key(seed, _CAMERA_KEY)
     inputs = [compiled.data, camera, photon_map.data, receivers, data]
     launch_ranges(

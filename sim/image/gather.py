@@ -104,11 +104,11 @@ def make_kernel_integral(precision: str, features: Features) -> object:
 
 @functools.cache
 def make_gather(precision: str, features: Features) -> object:
-    """Device function `gather(scene, photons, receivers, met, band, turn, scale, sums, row)`.
+    """Device function `gather(scene, photons, receivers, met, band, deal, scale, sums, row)`.
 
     It adds `scale` times the reflected radiance, times the bands' width, to the bands of
-    `sums[row]`: to all of them where `band` is −1, else to that one, from the deal of undispersed
-    photons that is its `turn`. The columns behind the bands, one a lamp, are
+    `sums[row]`: to all of them where `band` is −1, else to that one, and of undispersed photons
+    from one of their deals. The columns behind the bands, one a lamp, are
     scratch, zero before and after.
     """
     real = precision_types(precision).real
@@ -160,7 +160,7 @@ def make_gather(precision: str, features: Features) -> object:
     @wp.func
     def gather(
         scene: scene_type, photons: map_type, receivers: receivers_type, met: interaction_type,
-        band: int, turn: int, scale: real, sums: wp.array2d(dtype=wp.float64), row: int,
+        band: int, deal: int, scale: real, sums: wp.array2d(dtype=wp.float64), row: int,
     ):
         bands = receivers.bands
         surface = surface_key(met.prim, met.face, met.side)
@@ -176,10 +176,10 @@ def make_gather(precision: str, features: Features) -> object:
                         share = wp.float64(receivers.spread[lamp, met.prim, b])
                         sums[row, b] += total * share
         else:
-            deal = bands + (band + turn) % DEALS
+            dealt = bands + (band + deal) % DEALS
             total = sum_group(photons, receivers, met, surface, band, band)
-            dealt = sum_group(photons, receivers, met, surface, deal, band)
-            total += dealt * real(wp.static(float(DEALS)))
+            undispersed = sum_group(photons, receivers, met, surface, dealt, band)
+            total += undispersed * real(wp.static(float(DEALS)))
             sums[row, band] += wp.float64(peak * total)
 
     return gather

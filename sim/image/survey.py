@@ -19,8 +19,9 @@ from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
 
 __all__ = ["Survey", "survey_view"]
 
-_GRID = 64
-_ENOUGH = 16
+FloatArray = npt.NDArray[np.float64]
+
+_GRID = 128
 _BOUNDARIES = wp.constant(16)
 
 
@@ -93,21 +94,35 @@ class Survey:
         objects: (n,) which object.
     """
 
-    widths: npt.NDArray[np.float64]
-    points: npt.NDArray[np.float64]
+    widths: FloatArray
+    points: FloatArray
     objects: npt.NDArray[np.int32]
 
     def fraction(self, prim: int) -> float:
         """Fraction of the samples that see a receiver which see this one."""
         return float(np.mean(self.objects == prim)) if len(self.objects) else 0.0
 
-    def extent(self, prim: int, frame: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
-        """(2, 3) low and high of the visible part of an object along the rows of `frame`."""
-        seen = self.points[self.objects == prim]
-        if len(seen) < _ENOUGH:
-            return None
-        along = seen @ frame.T
-        return np.stack([along.min(axis=0), along.max(axis=0)])
+    def density(
+        self, prim: int, frame: FloatArray, centre: FloatArray, half: FloatArray, cells: int
+    ) -> FloatArray:
+        """(cells, cells) samples that see each part of a rectangle or one next to it.
+
+        Args:
+            prim: the object.
+            frame: (3, 3), its rows u, v, normal.
+            centre: (3,) in the local frame [m].
+            half: (2,) half sizes [m].
+            cells: parts a side, along u and along v.
+        """
+        inside = (self.points[self.objects == prim] - centre) @ frame[:2].T / half
+        edges = np.linspace(-1.0, 1.0, cells + 1)
+        counts: FloatArray = np.histogram2d(inside[:, 0], inside[:, 1], bins=(edges, edges))[0]
+        # A cell that the picture's border cuts must not get few photons for the part it shows,
+        # so each cell counts as its densest neighbour.
+        padded = np.pad(counts, 1)
+        shifts = [padded[i : i + cells, j : j + cells] for i in range(3) for j in range(3)]
+        densest: FloatArray = np.max(shifts, axis=0)
+        return densest
 
 
 def survey_view(compiled: CompiledScene, camera: Any, wavelength_nm: float) -> Survey:

@@ -19,6 +19,7 @@ import warp as wp
 
 from sim.photons.lamp_structs import (
     AIM_AREA,
+    AIM_CELLS,
     AIM_CONE,
     BEAM,
     RECTANGLE_LAMP,
@@ -45,10 +46,46 @@ INV_4PI = wp.constant(0.07957747154594767)
 
 
 @functools.cache
+def make_cell_functions(precision: str) -> SimpleNamespace:
+    """Device functions of a rectangle's distribution: `invert_cells`, `cell_density`."""
+    structs = make_lamp_structs(precision)
+    real = structs.real
+
+    @wp.func
+    def invert_cells(cdf: wp.array(dtype=real), first: int, u: real):
+        """Cell, and coordinate in [0, 1) of the side, where the distribution reaches u."""
+        low = int(0)
+        high = int(AIM_CELLS)
+        while high - low > 1:
+            middle = (low + high) // 2
+            if cdf[first + middle] <= u:
+                low = middle
+            else:
+                high = middle
+        start = cdf[first + low]
+        inside = (u - start) / (cdf[first + low + 1] - start)
+        return low, (real(low) + inside) * real(wp.static(1.0 / AIM_CELLS))
+
+    @wp.func
+    def cell_density(cdf: wp.array(dtype=real), first: int, s: real, t: real):
+        """Density at (s, t) of the unit square, relative to a uniform one."""
+        cells = int(AIM_CELLS)
+        i = wp.clamp(int(s * real(wp.static(float(AIM_CELLS)))), 0, cells - 1)
+        j = wp.clamp(int(t * real(wp.static(float(AIM_CELLS)))), 0, cells - 1)
+        row = first + (i + 1) * (cells + 1)
+        along_u = cdf[first + i + 1] - cdf[first + i]
+        along_v = cdf[row + j + 1] - cdf[row + j]
+        return along_u * along_v * real(wp.static(float(AIM_CELLS * AIM_CELLS)))
+
+    return SimpleNamespace(invert_cells=invert_cells, cell_density=cell_density)
+
+
+@functools.cache
 def make_density_functions(precision: str) -> SimpleNamespace:
     """Device functions of solid-angle densities: `own_density`, `target_density` [1/sr]."""
     structs = make_lamp_structs(precision)
-    real, vec3 = structs.real, structs.vec3
+    real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
+    cell_density = make_cell_functions(precision).cell_density
     emitter_type, target_type = structs.Emitter, structs.Target
 
     @wp.func
@@ -76,9 +113,11 @@ def make_density_functions(precision: str) -> SimpleNamespace:
         return sin2 / (real(2.0) * (real(1.0) + wp.sqrt(real(1.0) - sin2)))
 
     @wp.func
-    def area_density(emitter: emitter_type, target: target_type, origin: vec3, direction: vec3,
-                     drawn: bool):
-        """Density of a uniform point of the rectangle, seen from `origin` along `direction`."""
+    def area_density(
+        lamps: lamps_type, emitter: emitter_type, target: target_type, origin: vec3,
+        direction: vec3, drawn: bool,
+    ):
+        """Density of the rectangle's points, seen from `origin` along `direction`."""
         offset = target.centre - origin
         normal = target.frame[2]
         approach = wp.dot(direction, normal)
@@ -92,6 +131,12 @@ def make_density_functions(precision: str) -> SimpleNamespace:
         if outside and not drawn:
             return real(0.0)
         density = t * t / (real(4.0) * target.half_u * target.half_v * wp.abs(approach))
+        density *= cell_density(
+            lamps.cdf,
+            target.first_cdf,
+            real(0.5) + real(0.5) * local[0] / target.half_u,
+            real(0.5) + real(0.5) * local[1] / target.half_v,
+        )
         if emitter.kind == SPHERE_LAMP:
             # The lamp's point was drawn with the cosine about the way to the target's point,
             # where the lamp's own radiation goes with the cosine of the direction.
@@ -102,7 +147,8 @@ def make_density_functions(precision: str) -> SimpleNamespace:
 
     @wp.func
     def target_density(
-        emitter: emitter_type, target: target_type, origin: vec3, direction: vec3, drawn: bool
+        lamps: lamps_type, emitter: emitter_type, target: target_type, origin: vec3,
+        direction: vec3, drawn: bool,
     ):
         """Density with which `target` draws `direction`, relative to the lamp's position.
 
@@ -120,7 +166,7 @@ def make_density_functions(precision: str) -> SimpleNamespace:
                     return real(0.0)
             return real(1.0) / cone_solid_angle(sin2_half)
         if target.kind == AIM_AREA:
-            return area_density(emitter, target, origin, direction, drawn)
+            return area_density(lamps, emitter, target, origin, direction, drawn)
         return own_density(emitter, direction)
 
     return SimpleNamespace(
@@ -191,13 +237,14 @@ def make_direction_function(precision: str) -> object:
 
 @functools.cache
 def make_line_function(precision: str) -> object:
-    """Device function `sample_line(emitter, target, u0, u1, u3, u4)`: (origin, direction).
+    """Device function `sample_line(lamps, emitter, target, u0, u1, u3, u4)`: (origin, direction).
 
     The first two numbers choose what is aimed at, the last two the point of the lamp. Points of
     a receiver are drawn before the lamp's, so that photons land as evenly as the numbers are.
     """
     structs = make_lamp_structs(precision)
-    real, vec3 = structs.real, structs.vec3
+    real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
+    invert_cells = make_cell_functions(precision).invert_cells
     emitter_type, target_type = structs.Emitter, structs.Target
     sample_direction = make_direction_function(precision)
 
@@ -210,15 +257,19 @@ def make_line_function(precision: str) -> object:
 
     @wp.func
     def sample_line(
-        emitter: emitter_type, target: target_type, u0: real, u1: real, u3: real, u4: real
+        lamps: lamps_type, emitter: emitter_type, target: target_type, u0: real, u1: real,
+        u3: real, u4: real,
     ):
         origin = emitter.centre
         if emitter.kind == RECTANGLE_LAMP:
             origin += emitter.frame[0] * ((u3 + u3 - real(1.0)) * emitter.half_u)
             origin += emitter.frame[1] * ((u4 + u4 - real(1.0)) * emitter.half_v)
         if target.kind == AIM_AREA:
-            point = target.centre + target.frame[0] * ((u0 + u0 - real(1.0)) * target.half_u)
-            point += target.frame[1] * ((u1 + u1 - real(1.0)) * target.half_v)
+            first = target.first_cdf
+            cell, s = invert_cells(lamps.cdf, first, u0)
+            _j, t = invert_cells(lamps.cdf, first + (cell + 1) * (AIM_CELLS + 1), u1)
+            point = target.centre + target.frame[0] * ((s + s - real(1.0)) * target.half_u)
+            point += target.frame[1] * ((t + t - real(1.0)) * target.half_v)
             if emitter.kind == SPHERE_LAMP:
                 way = wp.normalize(point - emitter.centre)
                 origin = point_of_sphere(emitter, way, u3, u4)
@@ -289,7 +340,7 @@ def make_emission(precision: str) -> object:
             ray.direction = sample_direction(emitter, target, ray.origin, u3, u4)
             return ray, wavelength_nm, emitter.flux / target.photons
 
-        origin, direction = sample_line(emitter, target, u0, u1, u3, u4)
+        origin, direction = sample_line(lamps, emitter, target, u0, u1, u3, u4)
         flux = real(0.0)
         own = own_density(emitter, direction)
         if emitter.kind == SPHERE_LAMP:
@@ -301,7 +352,7 @@ def make_emission(precision: str) -> object:
             for other in range(first, first + emitter.target_count):
                 chosen = lamps.targets[other]
                 density += chosen.photons * target_density(
-                    emitter, chosen, origin, direction, other == target_row
+                    lamps, emitter, chosen, origin, direction, other == target_row
                 )
             flux = emitter.flux * own / density
         ray.origin = origin

@@ -10,6 +10,7 @@ from sim.precision import precision_types
 __all__ = [
     "AIM_AREA",
     "AIM_BASE",
+    "AIM_CELLS",
     "AIM_CONE",
     "BEAM",
     "POINT",
@@ -30,7 +31,10 @@ AIM_BASE = wp.constant(0)
 AIM_CONE = wp.constant(1)
 """Directions into the cone around a bounding sphere."""
 AIM_AREA = wp.constant(2)
-"""Directions to points uniform on a rectangle."""
+"""Directions to points of a rectangle, as densely as the camera looks there."""
+
+AIM_CELLS = wp.constant(32)
+"""Cells a side in which the density of points on a rectangle is given."""
 
 
 @functools.cache
@@ -57,7 +61,11 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
 
     @wp.struct
     class Target:
-        """Where photons are aimed, and how many: the first target of an emitter is its base."""
+        """Where photons are aimed, and how many: the first target of an emitter is its base.
+
+        An area's distribution function starts at `first_cdf` of `Lamps.cdf`: AIM_CELLS + 1
+        numbers over the cells along u, then as many for each of these along v.
+        """
 
         kind: int
         centre: vec3
@@ -65,6 +73,7 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         half_u: real
         half_v: real
         radius: real
+        first_cdf: int
         photons: real
 
     @wp.struct
@@ -86,6 +95,7 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         emitters: wp.array(dtype=Emitter)
         targets: wp.array(dtype=Target)
         segments: wp.array(dtype=Segment)
+        cdf: wp.array(dtype=real)
         sobol: wp.array(dtype=wp.uint32)
         seeds: wp.array(dtype=wp.uint32)
 

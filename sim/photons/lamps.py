@@ -1,17 +1,15 @@
 """The scene's emitters as device arrays, and how many photons each sends where."""
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import warp as wp
 
 import scenes
+from sim.photons.aiming import View, find_aims
 from sim.photons.lamp_structs import (
-    AIM_AREA,
-    AIM_BASE,
-    AIM_CONE,
     BEAM,
     POINT,
     RECTANGLE_LAMP,
@@ -29,37 +27,8 @@ __all__ = ["Lamps", "Stream", "compile_lamps"]
 
 FloatArray = npt.NDArray[np.float64]
 
-
-class View(Protocol):
-    """What a camera sees of each object: `sim.image.survey.Survey` is one."""
-
-    def extent(self, prim: int, frame: FloatArray) -> FloatArray | None:
-        """(2, 3) low and high of the visible part along the rows of `frame`, or None."""
-
-    def fraction(self, prim: int) -> float:
-        """Fraction of the picture in which the object is seen, directly or through glass."""
-
-
-Aim = tuple[Any, ...]
-"""The fields of a Target, but for its number of photons."""
-
-SPECULAR_SHARE = 0.25
-RECEIVER_SHARE = 0.65
-"""Shares of a lamp's photons aimed at specular objects and at receivers; the rest go as the lamp
-radiates. They divide effort, not light: any positive shares give the same expected picture."""
-
-SMALLEST_WEIGHT = 0.05
-"""A receiver's weight among the others is the fraction of the picture it fills, but at least this:
-what the camera barely sees may still be somebody's measurement."""
-
-VISIBLE_SHARE = 0.85
-"""Share of a receiver's photons that are aimed at its visible part, if that is aimed at."""
-
-VISIBLE_MARGIN = 0.02
-"""Added on each side of a receiver's visible part, as a fraction of its size."""
-
-VISIBLE_WORTH = 0.7
-"""A visible part larger than this fraction of the receiver is not aimed at for itself."""
+EQUAL_SHARE = 0.2
+"""Share of the photons that is divided equally among the emitters, whatever their flux."""
 
 
 @dataclass(frozen=True)
@@ -109,53 +78,66 @@ def compile_lamps(
         view: what the camera sees, so that most photons are aimed there; None: no camera.
     """
     scene, structs = compiled.scene, make_lamp_structs(compiled.precision)
+    shining = [
+        (emitter, *part)
+        for emitter in scene.emitters
+        if (part := _film_part(emitter, edges_nm)) is not None
+    ]
+    counts = _share(photons, _emitter_shares([flux for _, _, flux in shining]))
     emitters: list[tuple[Any, ...]] = []
     targets: list[tuple[Any, ...]] = []
     segments: list[tuple[Any, ...]] = []
     streams: list[Stream] = []
-    shining: list[EmissionSpectrum] = []
-    spectra = [_film_part(emitter, edges_nm) for emitter in scene.emitters]
-    counts = _share(photons, [0.5 / len(spectra) + 0.5 * f for f in _fractions(spectra)])
-    for row, (emitter, (spectrum, flux)) in enumerate(zip(scene.emitters, spectra, strict=True)):
-        if spectrum is None or counts[row] == 0:
-            continue
-        shining.append(spectrum)
-        aims = _find_targets(compiled, emitter, view)
+    distributions: list[FloatArray] = []
+    for row, (emitter, spectrum, flux) in enumerate(shining):
+        aims = find_aims(compiled, emitter, view)
         pieces = _segments(spectrum)
-        shares = _share(counts[row], [share for share, _ in aims])
-        first = len(targets)
-        for (_, aim), count in zip(aims, shares, strict=True):
-            streams.append(Stream(len(emitters), len(targets), count))
-            targets.append((*aim, float(count)))
         emitters.append(
-            (*_emitter_row(compiled, emitter), flux, first, len(aims), len(segments), len(pieces))
+            (
+                *_emitter_row(compiled, emitter), flux,
+                len(targets), len(aims), len(segments), len(pieces),
+            )
         )
         segments.extend(pieces)
+        for aim, count in zip(aims, _share(counts[row], [a.share for a in aims]), strict=True):
+            streams.append(Stream(row, len(targets), count))
+            first_cdf = sum(len(one) for one in distributions)
+            distributions.append(aim.distribution)
+            targets.append(
+                (
+                    aim.kind, aim.centre, aim.frame, *aim.half, aim.radius, first_cdf,
+                    float(count),
+                )
+            )
     data = structs.Lamps()
     data.emitters = struct_array(structs.Emitter, emitters, compiled.device)
     data.targets = struct_array(structs.Target, targets, compiled.device)
     data.segments = struct_array(structs.Segment, segments, compiled.device)
     data.sobol = wp.array(sobol_tables(), dtype=wp.uint32, device=compiled.device)
-    flux = float(sum(flux for _, flux in spectra))
-    return Lamps(data, tuple(streams), flux, tuple(shining))
+    cdf = np.concatenate([*distributions, np.zeros(1)])
+    types = precision_types(compiled.precision)
+    data.cdf = wp.array(cdf.astype(types.dtype), dtype=types.real, device=compiled.device)
+    flux = sum(flux for _, _, flux in shining)
+    return Lamps(data, tuple(streams), flux, tuple(spectrum for _, spectrum, _ in shining))
 
 
 def _film_part(
     emitter: Any, edges_nm: FloatArray
-) -> tuple[EmissionSpectrum | None, float]:
-    """The emitter's spectrum inside the film's range, and the flux it has there [W]."""
+) -> tuple[EmissionSpectrum, float] | None:
+    """The emitter's spectrum inside the film's range and the flux it has there [W], if any."""
     spectrum = emitter.emission()
     low, high = float(edges_nm[0]), float(edges_nm[-1])
     inside = float(np.sum(spectrum.band_flux(np.array([low, high]))))
     if inside <= 0.0:
-        return None, 0.0
+        return None
     return spectrum.restricted(low, high), emitter.flux * inside / spectrum.total
 
 
-def _fractions(spectra: list[tuple[EmissionSpectrum | None, float]]) -> list[float]:
-    """Each emitter's fraction of the whole flux."""
-    total = sum(flux for _, flux in spectra)
-    return [flux / total for _, flux in spectra]
+def _emitter_shares(fluxes: list[float]) -> list[float]:
+    """Each emitter's share of the photons: by flux, and a part of them equally, so that a faint
+    beam beside a bright lamp is not made of a handful of photons."""
+    total = sum(fluxes)
+    return [EQUAL_SHARE / len(fluxes) + (1.0 - EQUAL_SHARE) * flux / total for flux in fluxes]
 
 
 def _share(total: int, weights: list[float]) -> list[int]:
@@ -209,59 +191,3 @@ def _emitter_row(compiled: CompiledScene, emitter: Any) -> tuple[Any, ...]:
     frame = np.stack(emitter.frame())
     half_u, half_v = 0.5 * emitter.size[0], 0.5 * emitter.size[1]
     return int(RECTANGLE_LAMP), 0, centre, frame, half_u, half_v, 0.0, 1.0
-
-
-def _find_targets(
-    compiled: CompiledScene, emitter: Any, view: View | None
-) -> list[tuple[float, Aim]]:
-    """(share of photons, Target fields but the count); the lamp's own distribution first."""
-    base = (int(AIM_BASE), np.zeros(3), np.eye(3), 0.0, 0.0, 0.0)
-    if isinstance(emitter, scenes.Beam):
-        return [(1.0, base)]
-    # A spherical lamp draws cones from its centre: what its rays can hit is larger by its radius.
-    margin = emitter.radius if isinstance(emitter, scenes.SphereLamp) else 0.0
-    specular: list[Aim] = []
-    receivers: list[tuple[float, Aim]] = []
-    for prim, item in enumerate(compiled.scene.objects):
-        if isinstance(item.shape, scenes.Plane):
-            continue  # without end, so there is nothing to aim at
-        if isinstance(item.material, scenes.Dielectric):
-            specular.append(_cone(compiled, item.shape, margin))
-        elif isinstance(item.material, scenes.Lambertian):
-            weight = 1.0 if view is None else max(view.fraction(prim), SMALLEST_WEIGHT)
-            if isinstance(item.shape, scenes.Rectangle):
-                receivers.extend(_areas(compiled, item.shape, prim, weight, view))
-            else:
-                receivers.append((weight, _cone(compiled, item.shape, margin)))
-    aims = [(SPECULAR_SHARE / len(specular), aim) for aim in specular]
-    total = sum(weight for weight, _ in receivers)
-    aims += [(RECEIVER_SHARE * weight / total, aim) for weight, aim in receivers]
-    return [(1.0 - SPECULAR_SHARE - RECEIVER_SHARE, base), *aims]
-
-
-def _cone(compiled: CompiledScene, shape: Any, margin: float) -> Aim:
-    """The cone around a shape's bounding sphere."""
-    centre, radius = shape.bounding_sphere()
-    return int(AIM_CONE), compiled.to_local(centre), np.eye(3), 0.0, 0.0, radius + margin
-
-
-def _areas(
-    compiled: CompiledScene, shape: scenes.Rectangle, prim: int, weight: float, view: View | None
-) -> list[tuple[float, Aim]]:
-    """A rectangle, and the part of it that the camera sees if that is much smaller; each with its weight."""
-    frame = np.stack(shape.frame())
-    centre = compiled.to_local(shape.position)
-    half = 0.5 * np.asarray(shape.size)
-    whole: Aim = (int(AIM_AREA), centre, frame, half[0], half[1], 0.0)
-    extent = None if view is None else view.extent(prim, frame)
-    if extent is not None:
-        middle = frame @ centre
-        margin = VISIBLE_MARGIN * (extent[1] - extent[0])
-        low = np.maximum((extent[0] - margin)[:2], middle[:2] - half)
-        high = np.minimum((extent[1] + margin)[:2], middle[:2] + half)
-        seen = 0.5 * (high - low)
-        if np.all(seen > 0.0) and np.prod(seen) < VISIBLE_WORTH * np.prod(half):
-            at = frame.T @ np.array([*(0.5 * (low + high)), middle[2]])
-            part: Aim = (int(AIM_AREA), at, frame, seen[0], seen[1], 0.0)
-            return [(weight * (1.0 - VISIBLE_SHARE), whole), (weight * VISIBLE_SHARE, part)]
-    return [(weight, whole)]

@@ -16,7 +16,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { DIMENSIONS = 5, SOBOL_ROW = 1024, STACK_SIZE = 8, MAX_MEDIA = 16 };
+enum { DIMENSIONS = 5, SOBOL_ROW = 1024, STACK_SIZE = 8, MAX_MEDIA = 16, AIM_CELLS = 32 };
 enum { DIELECTRIC, LAMBERTIAN, ABSORBER };
 enum { SELLMEIER, CAUCHY };
 enum { BEAM, POINT, SPOT, SPHERE_LAMP, RECTANGLE_LAMP };
@@ -54,7 +54,12 @@ typedef struct {
     double half_u, half_v, radius, sin2_half, flux;
     int kind, round, first_target, target_count, first_segment, segment_count;
 } Emitter;
-typedef struct { Vec centre, u, v, normal; double half_u, half_v, radius, photons; int kind; } Target;
+typedef struct {
+    Vec centre, u, v, normal;
+    double half_u, half_v, radius, photons;
+    const double *cdf;
+    int kind;
+} Target;
 typedef struct { double wavelength_nm, width_nm, density_low, density_high, cdf_low, cdf_high; } Segment;
 typedef struct { int emitter, target; uint32_t photons, seeds[DIMENSIONS]; uint64_t key; } Stream;
 
@@ -62,8 +67,9 @@ typedef struct {
     Sphere *spheres; Flat *flats; Plane *planes; Polyhedron *polyhedra;
     Body *bodies; Medium *media; Emitter *emitters; Target *targets; Segment *segments;
     Stream *streams;
+    double *cdf;
     int sphere_count, flat_count, plane_count, polyhedron_count;
-    int body_count, media_count, emitter_count, target_count, segment_count, stream_count;
+    int body_count, media_count, emitter_count, target_count, segment_count, stream_count, cdf_count;
     uint32_t sobol[DIMENSIONS * SOBOL_ROW];
     int max_interactions, slots_per_photon;
     double branch_threshold;
@@ -152,17 +158,11 @@ static inline Vec to_world(Vec local, Vec axis) {
     return normalize(along(along(scale(u, local.x), v, local.y), axis, local.z));
 }
 
-static double sample_wavelength(const Scene *scene, const Emitter *emitter, double u) {
+static inline double sample_wavelength(const Scene *scene, const Emitter *emitter, double u) {
+    /* Without a branch that depends on u: it would be mispredicted every other time. */
     const Segment *low = scene->segments + emitter->first_segment;
-    for (int left = emitter->segment_count; left > 1;) {
-        int half = left / 2;
-        if (low[half].cdf_low <= u) {
-            low += half;
-            left -= half;
-        } else {
-            left = half;
-        }
-    }
+    for (int left = emitter->segment_count, half; (half = left / 2) > 0; left -= half)
+        low = low[half].cdf_low <= u ? low + half : low;
     if (low->width_nm == 0.0) return low->wavelength_nm;
     double v = smaller(larger((u - low->cdf_low) / (low->cdf_high - low->cdf_low), 0.0), 1.0);
     double d0 = low->density_low, d1 = low->density_high;
@@ -175,6 +175,26 @@ static inline double cone_of(const Target *target, Vec to_target) {
     return sin2 >= 1.0 ? 1.0 : sin2 / (2.0 * (1.0 + sqrt(1.0 - sin2)));
 }
 
+/* Cell, and coordinate in [0, 1) of the side, where a rectangle's distribution reaches u. */
+static inline int invert_cells(const double *cdf, double u, double *s) {
+    int low = 0;
+    for (int half = AIM_CELLS / 2; half > 0; half /= 2) low = cdf[low + half] <= u ? low + half : low;
+    *s = (low + (u - cdf[low]) / (cdf[low + 1] - cdf[low])) * (1.0 / AIM_CELLS);
+    return low;
+}
+
+static inline int cell_of(double s) {
+    int cell = (int)(s * AIM_CELLS);
+    return cell < 0 ? 0 : cell > AIM_CELLS - 1 ? AIM_CELLS - 1 : cell;
+}
+
+/* Density of the rectangle's points at (s, t) of the unit square, relative to a uniform one. */
+static inline double cell_density(const double *cdf, double s, double t) {
+    int i = cell_of(s), j = cell_of(t);
+    const double *row = cdf + (i + 1) * (AIM_CELLS + 1);
+    return (cdf[i + 1] - cdf[i]) * (row[j + 1] - row[j]) * (AIM_CELLS * AIM_CELLS);
+}
+
 static inline double area_density(
     const Emitter *emitter, const Target *target, Vec origin, Vec direction, int drawn
 ) {
@@ -183,12 +203,12 @@ static inline double area_density(
     Vec offset = sub(target->centre, origin);
     double t = dot(offset, target->normal) / approach;
     if (t <= 0.0) return 0.0;
-    if (!drawn) {
-        Vec local = sub(scale(direction, t), offset);
-        if (fabs(dot(local, target->u)) > target->half_u) return 0.0;
-        if (fabs(dot(local, target->v)) > target->half_v) return 0.0;
-    }
+    Vec local = sub(scale(direction, t), offset);
+    double x = dot(local, target->u), y = dot(local, target->v);
+    if (!drawn && (fabs(x) > target->half_u || fabs(y) > target->half_v)) return 0.0;
     double density = t * t / (4.0 * target->half_u * target->half_v * fabs(approach));
+    density *= cell_density(target->cdf, 0.5 + 0.5 * x / target->half_u,
+                            0.5 + 0.5 * y / target->half_v);
     if (emitter->kind == SPHERE_LAMP) {
         Vec outward = sub(origin, emitter->centre);
         Vec way = normalize(along(outward, direction, t));
@@ -247,8 +267,11 @@ static inline void sample_line(
         origin = on_rectangle(origin, emitter->u, emitter->v, emitter->half_u, emitter->half_v,
                               u[3], u[4]);
     if (target->kind == AIM_AREA) {
+        double s, t;
+        int row = invert_cells(target->cdf, u[0], &s);
+        invert_cells(target->cdf + (row + 1) * (AIM_CELLS + 1), u[1], &t);
         Vec point = on_rectangle(target->centre, target->u, target->v, target->half_u,
-                                 target->half_v, u[0], u[1]);
+                                 target->half_v, s, t);
         if (sphere)
             origin = on_sphere(emitter, normalize(sub(point, emitter->centre)), u[3], u[4]);
         ray->direction = normalize(sub(point, origin));
@@ -260,7 +283,7 @@ static inline void sample_line(
 }
 
 /* Photon `i` of a stream: its ray and wavelength; returns its flux. */
-static double emit(const Scene *scene, const Stream *stream, uint32_t i, Ray *ray, double *wavelength_nm) {
+static inline double emit(const Scene *scene, const Stream *stream, uint32_t i, Ray *ray, double *wavelength_nm) {
     const Emitter *emitter = scene->emitters + stream->emitter;
     const Target *target = scene->targets + stream->target;
     uint64_t low = hash64(stream->key, 2 * (uint64_t)i), low2 = hash64(stream->key, 2 * (uint64_t)i + 1);
@@ -310,12 +333,11 @@ static inline double intersect_polyhedron(
     const Plane *planes, int first, int count, Vec origin, Vec direction, int leaving_face, int *face
 ) {
     double t_enter = -INFINITY, t_exit = INFINITY;
-    int enter = -1, leave = -1, inside = 0;
+    int enter = -1, leave = -1, leaves = leaving_face >= first && leaving_face < first + count;
     for (int k = first; k < first + count; k++) {
         double approach = dot(planes[k].normal, direction);
         if (k == leaving_face) {
             if (approach >= 0.0) return -1.0;
-            inside = 1;
             continue;
         }
         double distance = planes[k].offset - dot(planes[k].normal, origin);
@@ -325,11 +347,11 @@ static inline double intersect_polyhedron(
         } else if (approach > 0.0) {
             double t = distance / approach;
             if (t < t_exit) { t_exit = t; leave = k; }
-        } else if (distance < 0.0) {
+        } else if (distance < 0.0 && !leaves) {
             return -1.0;
         }
     }
-    if (inside) {
+    if (leaves) {
         *face = leave;
         return leave < 0 ? -1.0 : larger(t_exit, 0.0);
     }
@@ -412,6 +434,10 @@ static inline void media_indices(const Scene *scene, double wavelength_nm, doubl
 static inline double cross_boundary(Vec d, Vec normal, double eta, Vec *reflected, Vec *refracted) {
     double cos_i = smaller(-dot(d, normal), 1.0);
     *reflected = renormalize(along(d, normal, 2.0 * cos_i));
+    if (eta == 1.0) {
+        *refracted = d;
+        return 0.0;
+    }
     double sin2_t = eta * eta * (1.0 - cos_i) * (1.0 + cos_i);
     if (sin2_t >= 1.0) {
         *refracted = *reflected;
@@ -419,7 +445,6 @@ static inline double cross_boundary(Vec d, Vec normal, double eta, Vec *reflecte
     }
     double cos_t = sqrt(1.0 - sin2_t);
     *refracted = renormalize(along(scale(d, eta), normal, eta * cos_i - cos_t));
-    if (eta == 1.0) return 0.0;
     if (cos_i <= 0.0) return 1.0;
     double s = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     double p = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
@@ -586,10 +611,11 @@ static void read_scene(const char *path, Scene *scene) {
          a->half_u = take(&p); a->half_v = take(&p); a->radius = take(&p); a->sin2_half = take(&p);
          a->flux = take(&p); a->first_target = take_int(&p); a->target_count = take_int(&p);
          a->first_segment = take_int(&p); a->segment_count = take_int(&p););
-    READ(targets, target_count, 17,
+    READ(cdf, cdf_count, 1, *a = take(&p););
+    READ(targets, target_count, 18,
          a->kind = take_int(&p); a->centre = take_vec(&p); a->u = take_vec(&p); a->v = take_vec(&p);
          a->normal = take_vec(&p); a->half_u = take(&p); a->half_v = take(&p); a->radius = take(&p);
-         a->photons = take(&p););
+         a->cdf = scene->cdf + take_int(&p); a->photons = take(&p););
     READ(segments, segment_count, 6,
          a->wavelength_nm = take(&p); a->width_nm = take(&p); a->density_low = take(&p);
          a->density_high = take(&p); a->cdf_low = take(&p); a->cdf_high = take(&p););

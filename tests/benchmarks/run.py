@@ -31,6 +31,8 @@ sys.path.insert(0, str(HERE.parents[1]))
 
 import scenes  # noqa: E402
 from sim.device import start_device  # noqa: E402
+from sim.image.camera import compile_camera  # noqa: E402
+from sim.image.survey import survey_view  # noqa: E402
 from sim.photons import tracing  # noqa: E402
 from sim.photons.lamps import Lamps, compile_lamps  # noqa: E402
 from sim.sampling.counter import fold_key  # noqa: E402
@@ -80,9 +82,10 @@ def sections(compiled: CompiledScene, lamps: Lamps) -> list[FloatArray]:
             "radius", "sin2_half", "flux", "first_target", "target_count", "first_segment",
             "segment_count",
         ),
+        shine.cdf.numpy().reshape(-1, 1),
         columns(
             targets, len(targets), "kind", "centre", "frame", "half_u", "half_v", "radius",
-            "photons",
+            "first_cdf", "photons",
         ),
         columns(
             shine.segments.numpy(), len(shine.segments), "wavelength_nm", "width_nm",
@@ -112,7 +115,9 @@ class Nephroid:
         scene = scenes.load(name)
         self.compiled = compile_scene(scene, device=start_device("cpu"))
         edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
-        self.lamps = compile_lamps(self.compiled, edges_nm, photons)
+        camera = compile_camera(self.compiled, scene.camera, scene.film)
+        survey = survey_view(self.compiled, camera, float(edges_nm.mean()))
+        self.lamps = compile_lamps(self.compiled, edges_nm, photons, view=survey)
         self.photons = sum(stream.photons for stream in self.lamps.streams)
 
     def trace(self, threads: int) -> tracing.PhotonBatch:

@@ -219,15 +219,17 @@ def outsideness(shape, points):
     z = (points - shape.position) @ axis
     rho = np.linalg.norm(points - shape.position - z[..., None] * axis, axis=-1)
     half, rim = 0.5 * shape.thickness, 0.5 * shape.aperture
-    within = np.minimum(rho, rim)
-    before = -half + sags(shape.first, within) - z
-    behind = z - half - sags(shape.second, within)
+    before = -depth(surface=shape.first, rho=np.minimum(rho, rim), z=z + half)
+    behind = depth(surface=shape.second, rho=np.minimum(rho, rim), z=z - half)
     return np.maximum(np.maximum(before, behind), rho - rim)
 
 
-def sags(surface, rho):
-    root = np.sqrt(np.maximum(1.0 - surface.steepness * rho**2, 0.0))
-    return surface.curvature * rho**2 / (1.0 + root)
+def depth(surface, rho, z):
+    """z − sag(ρ) over √(1 + slope²): about the distance behind a surface whose vertex is at 0."""
+    cosine2 = np.maximum(1.0 - surface.steepness * rho**2, 0.0)
+    sag = surface.curvature * rho**2 / (1.0 + np.sqrt(cosine2))
+    slope2_cosine2 = (surface.curvature * rho) ** 2
+    return (z - sag) * np.sqrt(cosine2 / (cosine2 + slope2_cosine2 + 1e-300))
 
 
 def shape_of(bench, name):
@@ -368,9 +370,8 @@ def test_rays_into_edges_and_corners_are_not_lost(bench, name):
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     origins = np.repeat(starts, len(targets), axis=0)
     _, _, lost, _ = bench.reflect_inside(origins, directions, np.full(len(origins), prim), 6)
-    first = lost == 0
-    # Through the very edge of a corner the ray may slip past in single precision, by an ulp.
-    assert not first.any()
+    # From a seam that is hit to the last digit a ray may run along the rim, tangent to it, so that
+    # in single precision rounding decides from which side it meets the rim again.
     assert np.mean(lost >= 0) <= (0.0 if bench.precision == "float64" else 1e-3)
 
 
@@ -491,12 +492,7 @@ def test_equal_media_let_everything_through_unchanged(bench, cosine):
     way = np.array([[np.sqrt((1.0 - cosine) * (1.0 + cosine)), -cosine, 0.0]])
     top = np.array([[-SPACING, 1.0, 0.0]])
     met = bench.step(top - 0.3 * way, way)
-    if bench.precision == "float32" and cosine < 1e-6:
-        # The start, rounded, lies in the plane of the face: it runs along it.
-        assert met.prim[0] in (AIR_BOX, -1)
-    else:
-        assert met.prim.tolist() == [AIR_BOX]
-    if met.prim[0] == AIR_BOX:
-        assert met.total.tolist() == [0]
-        assert met.reflectance.tolist() == [0.0]
-        np.testing.assert_array_equal(met.refracted, way.astype(bench.precision))
+    assert met.prim.tolist() == [AIR_BOX]
+    assert met.total.tolist() == [0]
+    assert met.reflectance.tolist() == [0.0]
+    np.testing.assert_array_equal(met.refracted, way.astype(bench.precision))

@@ -1,0 +1,142 @@
+"""What a lamp's photons are aimed at: specular objects, and receivers where they are seen.
+
+Aiming divides effort, not light: the balance heuristic of `sim.photons.emission` makes every
+choice here give the same expected picture. A lens of 12.7 mm half a metre from a lamp fills
+1/6203 of the sphere, so the choice decides how long a good picture takes.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+import scenes
+from sim.photons.lamp_structs import AIM_AREA, AIM_BASE, AIM_CELLS, AIM_CONE
+from sim.scene_data import CompiledScene
+
+__all__ = ["Aim", "View", "find_aims"]
+
+FloatArray = npt.NDArray[np.float64]
+
+SPECULAR_SHARE = 0.2
+RECEIVER_SHARE = 0.72
+"""Shares of a lamp's photons aimed at specular objects and at receivers; the rest go as the lamp
+radiates. They divide effort, not light: any positive shares give the same expected picture."""
+
+SMALLEST_WEIGHT = 0.05
+"""A receiver's weight among the others is the fraction of the picture it fills, but at least this:
+what the camera barely sees may still be somebody's measurement."""
+
+
+UNIFORM_PART = 0.2
+"""Part of a receiver's photons spread over all of it; the rest goes where the camera looks."""
+
+
+class View(Protocol):
+    """What a camera sees of each object: `sim.image.survey.Survey` is one."""
+
+    def density(
+        self, prim: int, frame: FloatArray, centre: FloatArray, half: FloatArray, cells: int
+    ) -> FloatArray:
+        """(cells, cells) how often the parts of a rectangle are seen, along its u and v."""
+
+    def fraction(self, prim: int) -> float:
+        """Fraction of the picture in which the object is seen, directly or through glass."""
+
+
+@dataclass(frozen=True)
+class Aim:
+    """A target of one lamp, in the local frame.
+
+    Attributes:
+        share: its share of the lamp's photons, relative to the other aims'.
+        kind: AIM_BASE, AIM_CONE or AIM_AREA.
+        centre: (3,) of the sphere or rectangle [m].
+        frame: (3, 3) rows u, v, normal of the rectangle.
+        half: (2,) half sizes of the rectangle [m].
+        radius: of the sphere [m].
+        distribution: of an area's points, see `sim.photons.lamp_structs`; else empty.
+    """
+
+    share: float
+    kind: int
+    centre: FloatArray
+    frame: FloatArray
+    half: FloatArray
+    radius: float
+    distribution: FloatArray
+
+
+def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[Aim]:
+    """Everything worth aiming at, the lamp's own distribution first.
+
+    Args:
+        compiled: the scene.
+        emitter: one of its emitters.
+        view: what the camera sees of each object; None: no camera.
+    """
+    if isinstance(emitter, scenes.Beam):
+        return [_base(1.0)]
+    # A spherical lamp draws cones from its centre: what its rays can hit is larger by its radius.
+    margin = emitter.radius if isinstance(emitter, scenes.SphereLamp) else 0.0
+    found = list(enumerate(compiled.scene.objects))
+    # A plane without end cannot be aimed at.
+    finite = [(prim, one) for prim, one in found if not isinstance(one.shape, scenes.Plane)]
+    specular = [one for _, one in finite if isinstance(one.material, scenes.Dielectric)]
+    receivers = [
+        (prim, one, 1.0 if view is None else max(view.fraction(prim), SMALLEST_WEIGHT))
+        for prim, one in finite
+        if isinstance(one.material, scenes.Lambertian)
+    ]
+    total = sum(weight for _, _, weight in receivers)
+    aims = [_base(1.0 - SPECULAR_SHARE - RECEIVER_SHARE)]
+    aims += [_cone(SPECULAR_SHARE / len(specular), compiled, one, margin) for one in specular]
+    for prim, one, weight in receivers:
+        share = RECEIVER_SHARE * weight / total
+        if isinstance(one.shape, scenes.Rectangle):
+            aims.append(_area(share, compiled, prim, view))
+        else:
+            aims.append(_cone(share, compiled, one, margin))
+    return aims
+
+
+def _base(share: float) -> Aim:
+    """The lamp's own distribution."""
+    return Aim(share, int(AIM_BASE), np.zeros(3), np.eye(3), np.zeros(2), 0.0, np.zeros(0))
+
+
+def _cone(share: float, compiled: CompiledScene, item: scenes.SceneObject, margin: float) -> Aim:
+    """The cone around an object's bounding sphere, larger by `margin`."""
+    assert not isinstance(item.shape, scenes.Plane)
+    centre, radius = item.shape.bounding_sphere()
+    local = compiled.to_local(centre)
+    return Aim(share, int(AIM_CONE), local, np.eye(3), np.zeros(2), radius + margin, np.zeros(0))
+
+
+def _area(share: float, compiled: CompiledScene, prim: int, view: View | None) -> Aim:
+    """A rectangle, its points as dense as the camera's pixels are there."""
+    shape = compiled.scene.objects[prim].shape
+    assert isinstance(shape, scenes.Rectangle)
+    frame, half = np.stack(shape.frame()), 0.5 * np.asarray(shape.size)
+    centre = compiled.to_local(shape.position)
+    cells = int(AIM_CELLS)
+    density = np.full((cells, cells), 1.0 / cells**2)
+    if view is not None:
+        seen = view.density(prim, frame, centre, half, cells)
+        if seen.sum() > 0.0:
+            density = UNIFORM_PART * density + (1.0 - UNIFORM_PART) * seen / seen.sum()
+    return Aim(share, int(AIM_AREA), centre, frame, half, 0.0, _distribution(density))
+
+
+def _distribution(density: FloatArray) -> FloatArray:
+    """Distribution function of cells: of the rows, then of the cells in each row."""
+    rows = density.sum(axis=1)
+    return np.concatenate([_cumulated(line) for line in (rows, *(density / rows[:, None]))])
+
+
+def _cumulated(shares: FloatArray) -> FloatArray:
+    """0, the running sums of `shares`, and at the end exactly 1."""
+    sums = np.concatenate([[0.0], np.cumsum(shares)])
+    sums[-1] = 1.0
+    return sums
