@@ -96,7 +96,7 @@ def make_media_function(precision: str, features: Features):
 def make_intersect(precision: str, features: Features):
     """Device function `intersect(scene, ray) -> Hit`, with only the shapes the scene has."""
     structs = make_scene_structs(precision)
-    real, vec3 = structs.real, structs.vec3
+    real = structs.real
     scene_type, ray_type, hit_type = structs.Scene, structs.Ray, structs.Hit
 
     @wp.func

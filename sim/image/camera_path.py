@@ -80,8 +80,17 @@ def make_render_camera(precision: str, features: Features) -> Any:
 
     @wp.func
     def follow(
-        scene: scene_type, photons: map_type, receivers: receivers_type, camera_ray: ray_type, band: int,
-        deal: int, weight: real, wavelength_nm: real, key: wp.uint64, sample: wp.array2d(dtype=wp.float64), row: int,
+        scene: scene_type,
+        photons: map_type,
+        receivers: receivers_type,
+        camera_ray: ray_type,
+        band: int,
+        deal: int,
+        weight: real,
+        wavelength_nm: real,
+        key: wp.uint64,
+        sample: wp.array2d(dtype=wp.float64),
+        row: int,
     ):
         """Add one path's radiance to `sample[row]`; 1 if a branch met a dispersive surface."""
         indices = media_indices(scene, wavelength_nm)
@@ -188,8 +197,11 @@ def make_render_camera(precision: str, features: Features) -> Any:
         ray.prim = -1
         ray.face = -1
         inside_band = z - wp.floor(z)
-        key = hash64(film.key + wp.uint64(1), shift * wp.uint64(65536) + wp.uint64(film.pass_index))
-        wavelength_nm = receivers.first_edge_nm + real(0.5) * receivers.band_width_nm * real(receivers.bands)
+        key = hash64(
+            film.key + wp.uint64(1), shift * wp.uint64(1048576) + wp.uint64(film.pass_index)
+        )
+        half_range_nm = real(0.5) * receivers.band_width_nm * real(receivers.bands)
+        wavelength_nm = receivers.first_edge_nm + half_range_nm
         dispersed = follow(
             scene, photons, receivers, ray, -1, 0, real(1.0) / real(film.turns), wavelength_nm,
             key, film.sample, pixel,

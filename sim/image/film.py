@@ -73,7 +73,8 @@ def create_film(
     """An unexposed film, with scratch for the sums of lamps beside those of the bands.
 
     Args:
-        height, width: pixels.
+        height: pixels.
+        width: pixels.
         edges_nm: (bands + 1,) band edges [nm].
         lamps: emitters that shine.
         device: where it lives.

@@ -38,7 +38,7 @@ PI = wp.constant(3.141592653589793)
 def make_kernel_integral(precision: str, features: Features) -> object:
     """Device function: the part of the gather kernel that lies on the receiver, in (0, 1]."""
     structs = make_scene_structs(precision)
-    real, vec3, scene_type = structs.real, structs.vec3, structs.Scene
+    real, scene_type = structs.real, structs.Scene
     interaction_type = structs.Interaction
 
     @wp.func

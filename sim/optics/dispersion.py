@@ -26,7 +26,7 @@ DISPERSION_COEFFICIENTS = 8
 
 @wp.func
 def sellmeier_index(coefficients: Any, row: int, wavelength_um: Any):
-    """n of the Sellmeier medium in `row` at `wavelength_um`; unused terms have B = 0, C = 0."""
+    """Index of the Sellmeier medium in `row` at `wavelength_um`; unused terms have B = 0, C = 0."""
     lambda2 = wavelength_um * wavelength_um
     n2 = type(wavelength_um)(1.0)
     for term in range(4):
@@ -38,7 +38,7 @@ def sellmeier_index(coefficients: Any, row: int, wavelength_um: Any):
 
 @wp.func
 def cauchy_index(coefficients: Any, row: int, wavelength_um: Any):
-    """n of the Cauchy medium in `row` at `wavelength_um`, by Horner's rule in λ⁻²."""
+    """Index of the Cauchy medium in `row` at `wavelength_um`, by Horner's rule in λ⁻²."""
     x = type(wavelength_um)(1.0) / (wavelength_um * wavelength_um)
     a0 = coefficients[row, 0]
     a1 = coefficients[row, 1]
@@ -49,7 +49,7 @@ def cauchy_index(coefficients: Any, row: int, wavelength_um: Any):
 
 @wp.func
 def tabulated_index(knots_nm: Any, cubics: Any, first: int, count: int, wavelength_nm: Any):
-    """n by the cubic between the two of `count` knots (from `first` on) around the wavelength."""
+    """Index by the cubic between the two of `count` knots, from `first` on, around λ."""
     low = int(0)
     high = int(count - 1)
     while high - low > 1:
@@ -68,7 +68,7 @@ def tabulated_index(knots_nm: Any, cubics: Any, first: int, count: int, waveleng
 
 @wp.func
 def air_index(wavelength_um: Any):
-    """n of standard air at 15 °C and 101 325 Pa (Ciddor 1996, eq. 1)."""
+    """Index of standard air at 15 °C and 101 325 Pa (Ciddor 1996, eq. 1)."""
     sigma2 = type(wavelength_um)(1.0) / (wavelength_um * wavelength_um)
     refractivity = type(wavelength_um)(0.05792105) / (type(wavelength_um)(238.0185) - sigma2)
     refractivity += type(wavelength_um)(0.00167917) / (type(wavelength_um)(57.362) - sigma2)

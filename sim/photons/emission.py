@@ -13,10 +13,10 @@ References:
 """
 
 import functools
-from types import SimpleNamespace
 
 import warp as wp
 
+from sim.photons.densities import make_cell_functions, make_density_functions
 from sim.photons.lamp_structs import (
     AIM_AREA,
     AIM_CELLS,
@@ -29,7 +29,6 @@ from sim.photons.lamp_structs import (
 )
 from sim.sampling.counter import hash64
 from sim.sampling.directions import (
-    cone_solid_angle,
     sample_cone,
     sample_cosine_hemisphere,
     sample_disk,
@@ -40,139 +39,6 @@ from sim.sampling.sobol import make_sobol_uniform
 from sim.scene_structs import make_ray_structs
 
 __all__ = ["make_emission"]
-
-INV_PI = wp.constant(0.3183098861837907)
-INV_4PI = wp.constant(0.07957747154594767)
-
-
-@functools.cache
-def make_cell_functions(precision: str) -> SimpleNamespace:
-    """Device functions of a rectangle's distribution: `invert_cells`, `cell_density`."""
-    structs = make_lamp_structs(precision)
-    real = structs.real
-
-    @wp.func
-    def invert_cells(cdf: wp.array(dtype=real), first: int, u: real):
-        """Cell, and coordinate in [0, 1) of the side, where the distribution reaches u."""
-        low = int(0)
-        high = int(AIM_CELLS)
-        while high - low > 1:
-            middle = (low + high) // 2
-            if cdf[first + middle] <= u:
-                low = middle
-            else:
-                high = middle
-        start = cdf[first + low]
-        inside = (u - start) / (cdf[first + low + 1] - start)
-        return low, (real(low) + inside) * real(wp.static(1.0 / AIM_CELLS))
-
-    @wp.func
-    def cell_density(cdf: wp.array(dtype=real), first: int, s: real, t: real):
-        """Density at (s, t) of the unit square, relative to a uniform one."""
-        cells = int(AIM_CELLS)
-        i = wp.clamp(int(s * real(wp.static(float(AIM_CELLS)))), 0, cells - 1)
-        j = wp.clamp(int(t * real(wp.static(float(AIM_CELLS)))), 0, cells - 1)
-        row = first + (i + 1) * (cells + 1)
-        along_u = cdf[first + i + 1] - cdf[first + i]
-        along_v = cdf[row + j + 1] - cdf[row + j]
-        return along_u * along_v * real(wp.static(float(AIM_CELLS * AIM_CELLS)))
-
-    return SimpleNamespace(invert_cells=invert_cells, cell_density=cell_density)
-
-
-@functools.cache
-def make_density_functions(precision: str) -> SimpleNamespace:
-    """Device functions of solid-angle densities: `own_density`, `target_density` [1/sr]."""
-    structs = make_lamp_structs(precision)
-    real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
-    cell_density = make_cell_functions(precision).cell_density
-    emitter_type, target_type = structs.Emitter, structs.Target
-
-    @wp.func
-    def own_density(emitter: emitter_type, direction: vec3):
-        """Density of the lamp's own radiation over directions."""
-        axis = emitter.frame[2]
-        if emitter.kind == RECTANGLE_LAMP:
-            return wp.max(wp.dot(direction, axis), real(0.0)) * real(INV_PI)
-        if emitter.kind == SPOT:
-            chord = direction - axis
-            # |d − a|² = 4 sin²(θ/2): exact where the cone is narrow.
-            if wp.dot(chord, chord) <= real(4.0) * emitter.sin2_half:
-                return real(1.0) / cone_solid_angle(emitter.sin2_half)
-            return real(0.0)
-        return real(INV_4PI)
-
-    @wp.func
-    def cone_of(target: target_type, origin: vec3):
-        """sin² of half the angle of the cone around a target's sphere; 1 from inside it."""
-        offset = target.centre - origin
-        distance2 = wp.dot(offset, offset)
-        sin2 = target.radius * target.radius / distance2
-        if sin2 >= real(1.0):
-            return real(1.0)
-        return sin2 / (real(2.0) * (real(1.0) + wp.sqrt(real(1.0) - sin2)))
-
-    @wp.func
-    def area_density(
-        lamps: lamps_type, emitter: emitter_type, target: target_type, origin: vec3,
-        direction: vec3, drawn: bool,
-    ):
-        """Density of the rectangle's points, seen from `origin` along `direction`."""
-        offset = target.centre - origin
-        normal = target.frame[2]
-        approach = wp.dot(direction, normal)
-        if approach == real(0.0):
-            return real(0.0)
-        t = wp.dot(offset, normal) / approach
-        if t <= real(0.0):
-            return real(0.0)
-        local = target.frame * (direction * t - offset)
-        outside = wp.abs(local[0]) > target.half_u or wp.abs(local[1]) > target.half_v
-        if outside and not drawn:
-            return real(0.0)
-        density = t * t / (real(4.0) * target.half_u * target.half_v * wp.abs(approach))
-        density *= cell_density(
-            lamps.cdf,
-            target.first_cdf,
-            real(0.5) + real(0.5) * local[0] / target.half_u,
-            real(0.5) + real(0.5) * local[1] / target.half_v,
-        )
-        if emitter.kind == SPHERE_LAMP:
-            # The lamp's point was drawn with the cosine about the way to the target's point,
-            # where the lamp's own radiation goes with the cosine of the direction.
-            outward = origin - emitter.centre
-            way = wp.normalize(origin + direction * t - emitter.centre)
-            density *= wp.max(wp.dot(outward, way), real(0.0)) / wp.dot(outward, direction)
-        return density
-
-    @wp.func
-    def target_density(
-        lamps: lamps_type, emitter: emitter_type, target: target_type, origin: vec3,
-        direction: vec3, drawn: bool,
-    ):
-        """Density with which `target` draws `direction`, relative to the lamp's position.
-
-        A spherical lamp's lines are counted per dω cosθ dA/(πR²); any other lamp's per dω dA/A.
-        A direction that this very target has `drawn` is inside it, whatever rounding says.
-        """
-        if target.kind == AIM_CONE:
-            anchor = origin
-            if emitter.kind == SPHERE_LAMP:
-                anchor = emitter.centre
-            sin2_half = cone_of(target, anchor)
-            if sin2_half < real(1.0) and not drawn:
-                chord = direction - wp.normalize(target.centre - anchor)
-                if wp.dot(chord, chord) > real(4.0) * sin2_half:
-                    return real(0.0)
-            return real(1.0) / cone_solid_angle(sin2_half)
-        if target.kind == AIM_AREA:
-            return area_density(lamps, emitter, target, origin, direction, drawn)
-        return own_density(emitter, direction)
-
-    return SimpleNamespace(
-        own_density=own_density, target_density=target_density, cone_of=cone_of
-    )
-
 
 @functools.cache
 def make_wavelength_function(precision: str) -> object:
@@ -291,7 +157,7 @@ def make_emission(precision: str) -> object:
         sequence that belongs to one emitter and one of its targets.
     """
     structs = make_lamp_structs(precision)
-    real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
+    real, lamps_type = structs.real, structs.Lamps
     ray_type = make_ray_structs(precision).Ray
     densities = make_density_functions(precision)
     own_density, target_density = densities.own_density, densities.target_density

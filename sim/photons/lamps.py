@@ -134,8 +134,10 @@ def _film_part(
 
 
 def _emitter_shares(fluxes: list[float]) -> list[float]:
-    """Each emitter's share of the photons: by flux, and a part of them equally, so that a faint
-    beam beside a bright lamp is not made of a handful of photons."""
+    """Each emitter's share of the photons: by flux, and a part of them equally.
+
+    So a faint beam beside a bright lamp is not made of a handful of photons.
+    """
     total = sum(fluxes)
     return [EQUAL_SHARE / len(fluxes) + (1.0 - EQUAL_SHARE) * flux / total for flux in fluxes]
 

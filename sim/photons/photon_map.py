@@ -20,9 +20,9 @@ import numpy as np
 import warp as wp
 
 from sim.launch import cut_ranges, launch_ranges
+from sim.photons.photon_batch import PhotonBatch
 from sim.photons.photon_structs import is_dispersed, make_photon_structs
 from sim.photons.receivers import DEALS, make_receiver_structs
-from sim.photons.tracing import PhotonBatch
 from sim.precision import precision_types
 from sim.scene_data import CompiledScene
 
@@ -163,7 +163,7 @@ def build_photon_map(
         loose.grid = grid.id
         return PhotonMap(loose, grid, 0)
     ranges = cut_ranges(count, _RANGE_SIZE)
-    slots = wp.array(batch.slots, dtype=int, device=device)
+    slots: Any = wp.array(batch.slots, dtype=int, device=device)
     inputs = [batch.data, slots, receivers, loose]
     launch_ranges(
         make_collect(precision), ranges, lambda _: inputs, device=device, threads=threads, stop=stop

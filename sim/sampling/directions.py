@@ -76,7 +76,7 @@ def cone_solid_angle(sin2_half: Any):
 
 @wp.func
 def to_world(x: Any, y: Any, z: Any, axis: Any):
-    """x u + y v + z axis in a frame about the unit `axis` (Duff et al. 2017, JCGT 6(1), 1)."""
+    """The vector x u + y v + z axis in a frame about `axis` (Duff et al. 2017, JCGT 6(1))."""
     one = type(x)(1.0)
     sign = one
     if axis[2] < type(x)(0.0):

@@ -71,12 +71,18 @@ def sobol_tables() -> npt.NDArray[np.uint32]:
 
 
 @wp.func
+def swap_bits(x: wp.uint32, mask: wp.uint32, shift: wp.uint32):
+    """Bits under `mask` and those `shift` above them, exchanged."""
+    return ((x >> shift) & mask) | ((x & mask) << shift)
+
+
+@wp.func
 def reverse_bits(x: wp.uint32):
     """The 32 bits of x in reverse order."""
-    y = ((x >> wp.uint32(1)) & wp.uint32(0x55555555)) | ((x & wp.uint32(0x55555555)) << wp.uint32(1))
-    y = ((y >> wp.uint32(2)) & wp.uint32(0x33333333)) | ((y & wp.uint32(0x33333333)) << wp.uint32(2))
-    y = ((y >> wp.uint32(4)) & wp.uint32(0x0F0F0F0F)) | ((y & wp.uint32(0x0F0F0F0F)) << wp.uint32(4))
-    y = ((y >> wp.uint32(8)) & wp.uint32(0x00FF00FF)) | ((y & wp.uint32(0x00FF00FF)) << wp.uint32(8))
+    y = swap_bits(x, wp.uint32(0x55555555), wp.uint32(1))
+    y = swap_bits(y, wp.uint32(0x33333333), wp.uint32(2))
+    y = swap_bits(y, wp.uint32(0x0F0F0F0F), wp.uint32(4))
+    y = swap_bits(y, wp.uint32(0x00FF00FF), wp.uint32(8))
     return (y >> wp.uint32(16)) | (y << wp.uint32(16))
 
 

@@ -1,0 +1,75 @@
+"""The photons that one pass stored, and where its energy went."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import warp as wp
+
+from sim.photons.energy import EnergyBooks
+from sim.photons.photon_structs import make_photon_structs
+from sim.precision import precision_types
+
+__all__ = ["PhotonBatch", "allocate_photons"]
+
+
+@dataclass(frozen=True)
+class PhotonBatch:
+    """Stored photons of one pass, on the device, and the pass's energy books.
+
+    Attributes:
+        data: the device-side Photons struct, with gaps.
+        slots: (n,) int32, the slots of `data` that hold photons, in the order of emission.
+        books: where the pass's flux went.
+        origin: (3,), world position of the local frame's origin [m].
+    """
+
+    data: Any
+    slots: npt.NDArray[np.int32]
+    books: EnergyBooks
+    origin: npt.NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.slots)
+
+    def to_numpy(self) -> dict[str, npt.NDArray[Any]]:
+        """The photons as host arrays, one row a photon.
+
+        Returns:
+            position (n, 3) in world coordinates [m], direction (n, 3), wavelength_nm, flux [W],
+            object and face (n,), side (0 front or outside, 1 back or inside), refractions,
+            reflections and bounces (n,), dispersed (n,) whether a dispersive boundary was met,
+            and emitter (n,), its row among the emitters that shine.
+        """
+        surface = self.data.surface.numpy()[self.slots]
+        history = self.data.history.numpy()[self.slots]
+        return {
+            "position": self.data.position.numpy()[self.slots] + self.origin,
+            "direction": self.data.direction.numpy()[self.slots],
+            "wavelength_nm": self.data.wavelength_nm.numpy()[self.slots],
+            "flux": self.data.flux.numpy()[self.slots],
+            "object": surface >> 14,
+            "face": (surface >> 1) & 8191,
+            "side": surface & 1,
+            "refractions": history & 1023,
+            "reflections": (history >> 10) & 1023,
+            "bounces": (history >> 20) & 1023,
+            "dispersed": (history >> 30) & 1 == 1,
+            "emitter": self.data.emitter.numpy()[self.slots],
+        }
+
+
+def allocate_photons(precision: str, device: str, slots: int) -> Any:
+    """A Photons struct with room for `slots` photons, not initialised."""
+    types = precision_types(precision)
+    photons = make_photon_structs(precision).Photons()
+    room = max(1, slots)
+    photons.position = wp.empty(room, dtype=types.vec3, device=device)
+    photons.direction = wp.empty(room, dtype=wp.vec3, device=device)
+    photons.wavelength_nm = wp.empty(room, dtype=wp.float32, device=device)
+    photons.flux = wp.empty(room, dtype=wp.float64, device=device)
+    photons.surface = wp.empty(room, dtype=int, device=device)
+    photons.history = wp.empty(room, dtype=int, device=device)
+    photons.emitter = wp.empty(room, dtype=int, device=device)
+    return photons
