@@ -26,9 +26,9 @@ Precision: TypeAlias = Literal["float32", "float64"]
 DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256}
 
 # The smallest and largest value of each whole-number setting. Totals (photons times passes) stay
-# within int64, and a photon's index within a pass within the 2³² points of a Sobol sequence.
+# within int64; a pass's deposits are counted in int32, with room for several a photon.
 _WHOLE_NUMBERS: Final = {
-    "photons": (1, 2**32),
+    "photons": (1, 2**28),
     "passes": (1, 2**20),
     "max_interactions": (1, 2**16),
     "seed": (0, 2**63 - 1),

@@ -121,8 +121,8 @@ def _print_books(picture: Picture) -> None:
 
 
 def _print_timings(timings: dict[str, float], seconds: float) -> None:
-    """Where the time went; what no stage accounts for is loading and writing."""
-    print("time")
+    """Where the time went. The stages overlap: the next pass is traced while one is gathered."""
+    print("time, of stages that overlap")
     for stage, spent in timings.items():
-        print(f"  {stage:<14}{spent:10.2f} s")
-    print(f"  {'the rest':<14}{seconds - sum(timings.values()):10.2f} s")
+        print(f"  {stage:<18}{spent:10.2f} s")
+    print(f"  {'in all':<18}{seconds:10.2f} s")

@@ -88,15 +88,23 @@ def _default_wavelengths_nm(scene: Scene) -> list[float]:
 def _traced(
     scene: Scene, rays: int, wavelengths_nm: Sequence[float], seed: int
 ) -> list[DrawnPath]:
+    import numpy as np
+
+    from sim.device import start_device
     from sim.diagram.ray_lines import DrawnPath
     from sim.photons.representative import representative_rays
-    from sim.single_ray import trace_ray
+    from sim.scene_data import compile_scene
+    from sim.single_ray import trace_compiled_rays
 
     origins, directions = representative_rays(scene, rays, seed)
-    paths = []
-    for wavelength_nm in wavelengths_nm:
-        for origin, direction in zip(origins, directions, strict=True):
-            path = trace_ray(scene, origin, direction, wavelength_nm)
-            escapes = bool(path.events) and path.events[-1] == _ESCAPE
-            paths.append(DrawnPath(path.points, wavelength_nm, escapes))
-    return paths
+    every_nm = np.repeat(np.asarray(wavelengths_nm, dtype=np.float64), rays)
+    bundles = len(wavelengths_nm)
+    paths = trace_compiled_rays(
+        compile_scene(scene, device=start_device("cpu")),
+        np.tile(origins, (bundles, 1)),
+        np.tile(directions, (bundles, 1)),
+        every_nm,
+    )
+    return [
+        DrawnPath(path.points, path.wavelength_nm, path.events[-1] == _ESCAPE) for path in paths
+    ]

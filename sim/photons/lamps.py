@@ -76,6 +76,9 @@ def compile_lamps(
         edges_nm: band edges of the film; light outside of them is not emitted.
         photons: photons of one pass.
         view: what the camera sees, so that most photons are aimed there; None: no camera.
+
+    Raises:
+        scenes.SceneError: no emitter shines inside the film's wavelengths.
     """
     scene, structs = compiled.scene, make_lamp_structs(compiled.precision)
     shining = [
@@ -83,6 +86,10 @@ def compile_lamps(
         for emitter in scene.emitters
         if (part := _film_part(emitter, edges_nm)) is not None
     ]
+    if not shining:
+        allowed = f"an emitter that shines between {edges_nm[0]:g} and {edges_nm[-1]:g} nm"
+        problem = scenes.Problem("emitters", f"none gives light; it needs {allowed}", None, allowed)
+        raise scenes.SceneError(scene.source_name, [problem])
     counts = _share(photons, _emitter_shares([flux for _, _, flux in shining]))
     emitters: list[tuple[Any, ...]] = []
     targets: list[tuple[Any, ...]] = []

@@ -68,7 +68,7 @@ def test_outputs_exposure_and_report(folder, tmp_path, capfd):
         assert np.asarray(dark).mean() < np.asarray(automatic).mean()
     captured = capfd.readouterr()
     assert f"{exr} and {png}: 12 × 8, 4 bands" in captured.out
-    for heading in ("energy", "emitted", "deposited", "residual", "time", "gather", "the rest"):
+    for heading in ("energy", "emitted", "deposited", "residual", "time", "gather", "in all"):
         assert heading in captured.out
     assert "photons" in captured.err  # Progress, in plain lines, since this is no terminal.
     assert "\x1b" not in captured.err
