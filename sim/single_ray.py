@@ -252,7 +252,7 @@ class _Record:
 
 def _require_indices(compiled: CompiledScene, wavelengths_nm: FloatArray) -> None:
     """Raise `spectra.WavelengthOutOfRange` where some medium of the scene has no index."""
-    for medium in compiled.media:
+    for medium in reversed(compiled.media):  # those of the objects first
         medium.eta(wavelengths_nm)
     if compiled.features.air_conversion:
         air_index(wavelengths_nm)

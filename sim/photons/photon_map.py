@@ -95,7 +95,7 @@ def make_collect(precision: str) -> Any:
             high = receivers.reflectance[surface >> 14, k + 1]
             out.weight[i] = flux * (low + (x - real(k)) * (high - low))
         else:
-            out.group[i] = receivers.bands + i % DEALS
+            out.group[i] = receivers.bands + (i >> 5) % DEALS
             out.weight[i] = flux
         out.lamp[i] = photons.emitter[slot]
 

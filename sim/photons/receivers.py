@@ -100,8 +100,11 @@ def _spread(
     """(objects, bands) ∫ s(λ) ρ(λ) dλ / π over each band, ∫ s dλ = 1 over the film."""
     bands = len(edges_nm) - 1
     parts = np.linspace(edges_nm[0], edges_nm[-1], bands * _PARTS_A_BAND + 1)
-    share = spectrum.band_flux(parts) / spectrum.total
-    reflectance = _reflectances(compiled, 0.5 * (parts[:-1] + parts[1:]))
-    product = (share * reflectance).reshape(len(reflectance), bands, _PARTS_A_BAND)
-    spread: FloatArray = product.sum(axis=2) / np.pi
-    return spread
+    lines_nm, lines = spectrum.line_wavelength_nm, spectrum.line_flux
+    continuous = spectrum.band_flux(parts) - np.histogram(lines_nm, parts, weights=lines)[0]
+    product = continuous * _reflectances(compiled, 0.5 * (parts[:-1] + parts[1:]))
+    spread: FloatArray = product.reshape(len(product), bands, _PARTS_A_BAND).sum(axis=2)
+    # A line is reflected as at its own wavelength, not as in the middle of a part of its band.
+    for row, reflected in enumerate(lines * _reflectances(compiled, lines_nm)):
+        spread[row] += np.histogram(lines_nm, edges_nm, weights=reflected)[0]
+    return spread / (spectrum.total * np.pi)

@@ -1,8 +1,8 @@
 """Trace photons from the lamps to the diffuse surfaces, and store what arrives.
 
 At a boundary the stronger of the two branches is followed with its weight and the other is put
-on a stack while its flux matters; below a threshold it plays Russian roulette for the threshold's
-flux. Nothing is averaged away, and the books keep what roulette adds or takes.
+on a stack while its flux matters; below a threshold either plays Russian roulette for the
+threshold's flux. Nothing is averaged away, and the books keep what roulette adds or takes.
 
 References:
     Jensen (1996), "Global illumination using photon maps", §2.1: photon tracing.
@@ -44,7 +44,7 @@ RANGE_SIZE = 8192
 """Photons a launch: some milliseconds of work, so that cores share evenly and Ctrl-C is heard."""
 
 BRANCH_THRESHOLD = 0.01
-"""A side branch below this fraction of its photon's flux plays roulette for it."""
+"""A branch below this fraction of its photon's flux plays roulette for it."""
 
 STACK_SIZE = wp.constant(8)
 
@@ -149,21 +149,35 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                     side_flux = refracted_flux
                     history = add_reflection(history)
                     flux = reflected_flux
-                if side_flux > real(0.0):
+                if depth == STACK_SIZE:
+                    # No room for a side branch: chance chooses one of both for the light of both.
+                    u = to_unit(hash64(job.key + wp.uint64(1), draws + wp.uint64(step)), flux)
+                    if u * (flux + side_flux) < side_flux:
+                        ray.direction = side_ray.direction
+                        history = side_history
+                    flux += side_flux
+                elif side_flux > real(0.0):
                     kept = side_flux
                     if side_flux < threshold:
                         u = to_unit(hash64(job.key + wp.uint64(1), draws + wp.uint64(step)), flux)
                         kept = real(0.0)
                         if u * threshold < side_flux:
                             kept = threshold
-                    if depth == STACK_SIZE:
-                        kept = real(0.0)
                     culled += side_flux - kept
                     if kept > real(0.0):
                         stack_ray[depth] = side_ray
                         stack_flux[depth] = kept
                         stack_history[depth] = side_history
                         depth += 1
+                if flux < threshold:
+                    # Else a path that is reflected again and again, and grows ever fainter, would
+                    # use up the interactions that the branches behind it need.
+                    u = to_unit(hash64(job.key + wp.uint64(2), draws + wp.uint64(step)), flux)
+                    culled += flux
+                    alive = u * threshold < flux
+                    if alive:
+                        flux = threshold
+                        culled -= threshold
             else:
                 alive = False
                 if met.event == EVENT_DEPOSIT:

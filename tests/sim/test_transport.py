@@ -25,7 +25,8 @@ WAVELENGTH_NM = 550.0
 def lens(r1, r2, thickness, aperture, k1=0.0, k2=0.0):
     """Fields of a lens; a radius of 0 stands for a plane."""
     first, second = (
-        {"curvature": 0.0} if r == 0.0 else {"radius": r, "conic": k} for r, k in ((r1, k1), (r2, k2))
+        {"curvature": 0.0} if r == 0.0 else {"radius": r, "conic": k}
+        for r, k in ((r1, k1), (r2, k2))
     )
     return scenes.Lens, {
         "axis": (1.0, 2.0, 2.0), "thickness": thickness, "aperture": aperture,
@@ -33,6 +34,7 @@ def lens(r1, r2, thickness, aperture, k1=0.0, k2=0.0):
     }  # fmt: skip
 
 
+TETRAHEDRON = ((1, 1, 1), (-1, -1, 1), (-1, 1, -1), (1, -1, -1))
 TURNED = {"rotation_deg": (10.0, 20.0, 30.0)}
 SOLIDS = {
     "ball": (scenes.Sphere, {"radius": 1.2}),
@@ -41,9 +43,7 @@ SOLIDS = {
     "prism": (scenes.Prism, {"apex_deg": 60.0, "base": 2.0, "length": 2.0, **TURNED}),
     "wedge": (scenes.Prism, {"apex_deg": 1e-3, "base": 0.5, "length": 2.0, "height": 2.0}),
     "sharp prism": (scenes.Prism, {"apex_deg": 5.0, "base": 0.2, "length": 1.0, **TURNED}),
-    "tetrahedron": (
-        scenes.Polyhedron, {"vertices": ((1, 1, 1), (-1, -1, 1), (-1, 1, -1), (1, -1, -1)), **TURNED}
-    ),
+    "tetrahedron": (scenes.Polyhedron, {"vertices": TETRAHEDRON, **TURNED}),
     "biconvex": lens(2.0, -1.5, 0.9, 2.0),
     "meniscus": lens(1.2, 2.5, 0.4, 2.0),
     "deep meniscus": lens(-0.95, -1.2, 0.5, 1.8),
@@ -136,8 +136,8 @@ def make_probes(precision: str, features: Features) -> SimpleNamespace:
         ray.prim = -1
         ray.face = -1
         indices = media_indices(scene, real(WAVELENGTH_NM))
-        lost = int(-1)
-        total = int(0)
+        lost = wp.int32(-1)
+        total = wp.int32(0)
         for bounce in range(bounces):
             met = interact(scene, ray, indices)
             if met.event != BOUNDARY or met.prim != prims[i] or met.side != 1:
@@ -408,7 +408,8 @@ def test_a_ball_keeps_its_light(bench):
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     miss = rng.uniform(0.7, 0.98, 64) * shape.radius  # R/η = 0.667 R
     origins = shape.position + miss[:, None] * radial
-    ends, ways, lost, total = bench.reflect_inside(origins, tangent, np.zeros(64, dtype=int), 10_000)
+    prims = np.zeros(64, dtype=int)
+    ends, ways, lost, total = bench.reflect_inside(origins, tangent, prims, 10_000)
     assert np.all(lost == -1)
     assert np.all(total == 10_000)
     # The distance of the chord from the centre is an invariant.
@@ -465,7 +466,7 @@ def test_boundaries_reflect_and_refract_as_fresnel_and_snell_say(bench):
     shape = shape_of(bench, "upright box")
     angles = np.deg2rad(np.linspace(0.0, 80.0, 41))
     ways = np.column_stack([np.sin(angles), -np.cos(angles), np.zeros(41)])
-    top = np.array(shape.position) + [0.0, 0.5, 0.0]
+    top = np.add(shape.position, [0.0, 0.5, 0.0])
     inside, outside = (bench.step(top - sign * 0.1 * ways, ways * sign) for sign in (-1.0, 1.0))
     # From above, η = 1/1.5.
     r_s, r_p = analytic.fresnel_reflectance(np.cos(angles), 1.0, ETA)

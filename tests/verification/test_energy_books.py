@@ -63,7 +63,8 @@ SCENES = {
     [(name, "float64") for name in SCENES] + [(n, "float32") for n in ("prism", "trap")],
 )
 def test_the_books_close(trace_passes, name, precision):
-    passes = trace_passes(SCENES[name](), photons=20_000, passes=2, precision=precision)
+    count = 2000 if name == "trap" else 20_000
+    passes = trace_passes(SCENES[name](), photons=count, passes=2, precision=precision)
     tolerance = TOLERANCE[precision]
     for books, photons in zip(passes.books, passes.photons, strict=True):
         # Emitted = deposited + absorbed + escaped + culled.
@@ -97,14 +98,14 @@ def test_what_total_reflection_traps_is_culled(trace_passes, assert_mean, precis
     # Reflections in a block change the signs of a direction's cosines, never their size: light
     # leaves if one of them exceeds cos θc = √(1 − 1/η²), and else never. With η = 2 the six cones
     # of escape, 30° wide, are apart, so that the fraction 1 − 3 (1 − cos θc) stays for ever.
-    passes = trace_passes(make_trap(), photons=20_000, passes=16, precision=precision)
+    passes = trace_passes(make_trap(), photons=4000, passes=16, precision=precision)
     trapped = 1.0 - 3.0 * (1.0 - np.sqrt(1.0 - 1.0 / ETA**2))
     # Next to the critical angle light leaves slowly too: R ≈ 1 − 4 η cosθₜ/cosθᵢ, so that after
     # some 256/6 meetings with each pair of faces a sliver of cosθₜ < 0.01 is left, which is
     # cosθₜ²/(2 η² cosθᵢ) = 1.5e-5 of all directions for each of 6 cones.
     culled = [books.culled for books in passes.books]
     assert_mean(culled, trapped * passes.flux, slack=1e-4 * passes.flux)
-    assert np.std(culled) < 0.01 * passes.flux
-    # The rest is halved between the floor's side and the others: no light turns up twice.
+    assert np.std(culled) < 0.02 * passes.flux
+    # All the rest arrives in the room, once.
     left = [books.absorbed + books.deposited for books in passes.books]
     assert_mean(left, (1.0 - trapped) * passes.flux, slack=1e-4 * passes.flux)

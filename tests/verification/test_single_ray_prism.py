@@ -252,7 +252,7 @@ def test_a_right_angled_prism_turns_light_back():
 def test_a_right_angled_prism_turns_light_by_90_degrees():
     # In through one leg, total reflection at the base, out through the other.
     scene = prism_scene("N-BK7", 90.0)
-    start = np.array([-0.25 * BASE, 0.0, 0.0]) + [-0.01, 0.01, 0.0]
+    start = (-0.25 * BASE - 0.01, 0.01, 0.0)
     path = trace_ray(scene, start, (1.0, -1.0, 0.0), 587.5618)
     assert path.events == ("refract", "total internal reflection", "refract", "escape")
     assert path.deviation == pytest.approx(0.5 * math.pi, abs=8.0 * EPS)
