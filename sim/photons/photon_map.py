@@ -34,6 +34,10 @@ CELLS_A_RADIUS = 1.5
 """Width of a cell in gather radii. A query for one band finds few photons and costs the cells it
 looks into; one for all bands costs the photons it passes over: this is between the two."""
 
+DEAL_BITS = wp.constant(5)
+"""Undispersed photons are dealt in packs of 2⁵. Every eighth point of a Sobol sequence lies in one
+eighth of the square; a pack lies all over it, and so do the packs of a deal."""
+
 _MAX_CELLS_A_SIDE = 1024
 _MAX_CELLS = 1 << 23
 
@@ -95,7 +99,7 @@ def make_collect(precision: str) -> Any:
             high = receivers.reflectance[surface >> 14, k + 1]
             out.weight[i] = flux * (low + (x - real(k)) * (high - low))
         else:
-            out.group[i] = receivers.bands + (i >> 5) % DEALS
+            out.group[i] = receivers.bands + (i >> DEAL_BITS) % DEALS
             out.weight[i] = flux
         out.lamp[i] = photons.emitter[slot]
 

@@ -475,6 +475,12 @@ static inline void store(Photons *photons, Vec point, Vec direction, double wave
     photons->emitter[slot] = emitter;
 }
 
+/* The number in [0, 1) that decides at interaction `step` of photon i; `purpose` 1: side branch. */
+static inline double roulette(const Stream *stream, int purpose, uint32_t i, int step) {
+    uint64_t bits = hash64(stream->key + (uint64_t)purpose, ((uint64_t)i << 24) + (uint64_t)step);
+    return (double)(uint32_t)(bits >> 40) * 0x1p-24;
+}
+
 static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, Photons *photons, Books *books) {
     struct { Ray ray; double flux; int32_t history; } stack[STACK_SIZE];
     Ray ray;
@@ -487,7 +493,7 @@ static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, P
     int32_t history = 0;
     int depth = 0;
     for (int step = 0; step < scene->max_interactions; step++) {
-        Hit hit;
+        Hit hit = {0};
         int material = ABSORBER;
         if (!intersect(scene, &ray, &hit)) {
             books->escaped += flux;
@@ -523,13 +529,16 @@ static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, P
                 ray.origin = point;
                 ray.prim = hit.prim;
                 ray.face = hit.face;
-                if (side_flux > 0.0) {
-                    double kept = side_flux;
-                    if (side_flux < threshold) {
-                        uint64_t bits = hash64(stream->key + 1, ((uint64_t)i << 24) + (uint64_t)step);
-                        kept = (double)(uint32_t)(bits >> 40) * 0x1p-24 * threshold < side_flux ? threshold : 0.0;
+                if (depth == STACK_SIZE) {
+                    if (roulette(stream, 1, i, step) * (flux + side_flux) < side_flux) {
+                        ray.direction = side_direction;
+                        history = side_history;
                     }
-                    if (depth == STACK_SIZE) kept = 0.0;
+                    flux += side_flux;
+                } else if (side_flux > 0.0) {
+                    double kept = side_flux;
+                    if (side_flux < threshold)
+                        kept = roulette(stream, 1, i, step) * threshold < side_flux ? threshold : 0.0;
                     books->culled += side_flux - kept;
                     if (kept > 0.0) {
                         stack[depth].ray = (Ray){point, side_direction, hit.prim, hit.face};
@@ -538,7 +547,13 @@ static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, P
                         depth++;
                     }
                 }
-                continue;
+                if (flux >= threshold) continue;
+                books->culled += flux;
+                if (roulette(stream, 2, i, step) * threshold < flux) {
+                    flux = threshold;
+                    books->culled -= threshold;
+                    continue;
+                }
             }
         }
         if (depth == 0) return;

@@ -3,11 +3,14 @@
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 import scenes
 from scenes import Beam, Lens, Prism, Rectangle, Scene, Sphere, SphereLamp
 from spectra import glass
+
+FloatArray = npt.NDArray[np.float64]
 
 
 @pytest.mark.parametrize("name", scenes.gallery())
@@ -58,14 +61,75 @@ def prism_bench() -> tuple[Prism, Rectangle, Beam]:
     return prism, screen, slit
 
 
-def test_the_lens_has_the_focal_length_it_says() -> None:
-    lens = shape_of(scenes.load("lens"), "lens")
-    assert isinstance(lens, Lens)
+def test_the_lens_forms_its_image_where_it_says() -> None:
+    lens, floor, lamp = lens_bench()
     n, t = glass("N-BK7").n_d, lens.thickness
     c1, c2 = lens.first.curvature, lens.second.curvature
-    # Lensmaker's equation (Hecht 2017, §6.1): 1/f = (n - 1)(c1 - c2 + (n - 1) t c1 c2 / n).
-    power = (n - 1.0) * (c1 - c2 + (n - 1.0) * t * c1 * c2 / n)
-    assert 1.0 / power == pytest.approx(0.1004, abs=5e-5)
+    # Lensmaker's equation (Hecht 2017, §6.1): 1/f = (n - 1)(c1 - c2 + (n - 1) t c1 c2 / n); the
+    # second principal plane lies f (n - 1) t c1 / n before the second vertex, and the first, by
+    # symmetry, as far behind the first.
+    focal_length = 1.0 / ((n - 1.0) * (c1 - c2 + (n - 1.0) * t * c1 * c2 / n))
+    inside = focal_length * (n - 1.0) * t * c1 / n
+    assert c2 == -c1
+    # The scene file states lengths to 0.01 mm.
+    assert focal_length == pytest.approx(60.45e-3, abs=5e-6)
+    assert inside == pytest.approx(4.81e-3, abs=5e-6)
+    centre, axis = np.array(lens.position), np.array(lens.axis)
+    to_lamp = np.array(lamp.position) - centre
+    np.testing.assert_allclose(np.cross(to_lamp, axis), 0.0, atol=1e-12)
+    distance = -to_lamp @ axis
+    assert distance == pytest.approx(494.97e-3, abs=5e-6)
+    # Gauss: 1/s + 1/s' = 1/f, from the principal planes.
+    before = distance - 0.5 * t + inside
+    behind = 1.0 / (1.0 / focal_length - 1.0 / before)
+    assert before == pytest.approx(492.78e-3, abs=5e-6)
+    assert behind == pytest.approx(68.91e-3, abs=5e-6)
+    image = behind - inside + 0.5 * t
+    assert image == pytest.approx(71.10e-3, abs=5e-6)
+    to_floor = (floor.position[1] - centre[1]) / axis[1]
+    assert to_floor == pytest.approx(67.88e-3, abs=5e-6)
+    assert rim_crossing(lens, distance, n) < to_floor < image
+
+
+def lens_bench() -> tuple[Lens, Rectangle, SphereLamp]:
+    scene = scenes.load("lens")
+    lens, floor, lamp = shape_of(scene, "lens"), shape_of(scene, "floor"), scene.emitters[0]
+    assert isinstance(lens, Lens)
+    assert isinstance(floor, Rectangle)
+    assert isinstance(lamp, SphereLamp)
+    return lens, floor, lamp
+
+
+def rim_crossing(lens: Lens, lamp_distance: float, n: float) -> float:
+    """Where the ray that enters 24.8 mm from the axis crosses it, from the lens's middle [m].
+
+    In the meridional plane, (along the axis, from the axis), by Snell's law in vector form (Born
+    & Wolf 1999, §3.2.2).
+    """
+    radius, height = lens.first.radius, 24.8e-3
+    assert radius is not None
+    centres = (radius - 0.5 * lens.thickness, 0.5 * lens.thickness - radius)
+    point = np.array([centres[0] - math.sqrt(radius**2 - height**2), height])
+    arriving = unit(np.array([point[0] + lamp_distance, point[1]]))
+    direction = refract(arriving, [centres[0], 0.0] - point, 1.0 / n)
+    offset = point - [centres[1], 0.0]
+    along = offset @ direction
+    point = point + direction * (math.sqrt(along**2 - offset @ offset + radius**2) - along)
+    direction = refract(direction, point - [centres[1], 0.0], n)
+    crossing = point[0] - point[1] * direction[0] / direction[1]
+    assert crossing == pytest.approx(49.7e-3, abs=1e-4)
+    return float(crossing)
+
+
+def unit(vector: FloatArray) -> FloatArray:
+    return vector / np.linalg.norm(vector)
+
+
+def refract(direction: FloatArray, ahead: FloatArray, eta: float) -> FloatArray:
+    """Snell's law; `ahead` is along the normal, to the far side; `eta` is n before over behind."""
+    normal = unit(ahead)
+    tangential = eta * (direction - (direction @ normal) * normal)
+    return tangential + math.sqrt(1.0 - tangential @ tangential) * normal
 
 
 def test_the_ball_is_where_it_should_be() -> None:

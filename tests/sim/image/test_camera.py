@@ -7,8 +7,8 @@ import scenes
 from sim.analytic import plate_lateral_shift
 
 WIDTH, HEIGHT, PASSES = 60, 40, 4
-ETA, THICKNESS, TILT_DEG = 1.5, 0.3, (25.0, 0.0, -15.0)
-RADIUS = 0.02
+ETA, THICKNESS, TILT_DEG = 1.5, 0.4, (15.0, 0.0, -30.0)
+RADIUS = 0.07
 
 CAMERA = scenes.Camera(
     position=(0.3, 3.0, 1.2), look_at=(0.1, 0.0, 0.0), up=(0.3, 1.0, 0.0), fov_deg=20.0
@@ -58,7 +58,7 @@ def make_room(darkroom, target, plate_at):
         shape=scenes.Disk(position=tuple(target), normal=tuple(toward), radius=RADIUS),
         material=scenes.Lambertian(reflectance=1.0),
     )
-    aside = np.array([-1.0, 0.4, 0.3])
+    aside = np.array([-1.5, 0.6, 0.3])
     beam = scenes.Beam(
         position=tuple(target + aside), direction=tuple(-aside), flux=1.0, spectrum="E",
         profile=scenes.RoundProfile(radius=2.0 * RADIUS),
@@ -67,7 +67,7 @@ def make_room(darkroom, target, plate_at):
         objects=(disk, make_plate(plate_at)), emitters=(beam,),
         film=scenes.Film(first_nm=450, last_nm=650, bands=2),
     )
-    return darkroom(scene, photons=3000, radius=0.3 * RADIUS, passes=PASSES)
+    return darkroom(scene, photons=3000, radius=0.2 * RADIUS, passes=PASSES)
 
 
 @pytest.mark.parametrize("target", [(0.1, 0.0, 0.0), (0.6, 0.1, 0.3), (-0.5, -0.1, -0.3)])

@@ -91,11 +91,11 @@ def test_through_a_plate(darkroom, assert_mean, medium):
 
 
 def test_from_inside_of_glass(darkroom, assert_mean):
-    # A camera in the glass sees η² (1 − R) times the radiance outside; and what the lower face
-    # sends back up it does not see.
+    # A camera in the glass sees η² (1 − R) times the radiance outside, and as much times R², R⁴ …
+    # that the lower face sends back and the upper one down again.
     objects = (SHEET, make_box(2.0, 0.5, PLAIN, width=0.5))
     means = block_means(darkroom, objects, ASIDE, straight_down(2.0))
-    assert_radiance(assert_mean, means, np.full(6, ETA**2 * (1.0 - R) * LIT))
+    assert_radiance(assert_mean, means, np.full(6, ETA**2 / (1.0 + R) * LIT))
 
 
 def test_into_glass(darkroom, assert_mean):
