@@ -177,9 +177,9 @@ def make_gather(precision: str, features: Features) -> object:
                         sums[row, b] += total * share
         else:
             dealt = bands + (band + deal) % DEALS
-            total = sum_group(photons, receivers, met, surface, band, band)
+            dispersed = sum_group(photons, receivers, met, surface, band, band)
             undispersed = sum_group(photons, receivers, met, surface, dealt, band)
-            total += undispersed * real(wp.static(float(DEALS)))
-            sums[row, band] += wp.float64(peak * total)
+            both = dispersed + undispersed * real(wp.static(float(DEALS)))
+            sums[row, band] += wp.float64(peak * both)
 
     return gather

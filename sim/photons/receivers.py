@@ -6,8 +6,8 @@ wavelength: what it deposits is spread over the bands as the lamp's
 spectrum and the receiver's reflectance say. That is the expectation over the wavelength it
 happens to carry, so light that no prism has touched has no colour noise at all.
 
-Undispersed photons are dealt out, in packs, over `DEALS` groups in turn. A camera path of one band gathers
-one of them, times `DEALS`: the paths of a pixel's other bands see the others.
+Undispersed photons are dealt out, in packs, over `DEALS` groups in turn. A camera path of one
+band gathers one of them, times `DEALS`: the paths of a pixel's other bands see the others.
 """
 
 import functools

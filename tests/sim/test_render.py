@@ -161,13 +161,14 @@ def test_a_receiver_that_no_light_reaches_is_black(small_scene):
     assert dark.energy.escaped == pytest.approx(dark.energy.emitted, rel=1e-12)
 
 
-def test_the_radius_is_a_few_pixels_of_the_median_width(small_scene):
+def test_the_radius_is_a_few_pixels_of_the_median_width():
     survey = Survey(
         widths=np.array([1.0, 2.0, 50.0]), points=np.zeros((3, 3)), objects=np.zeros(3, dtype=int)
     )
     radius = render_module.gather_radius(survey)
     assert 1.0 * 2.0 <= radius <= 5.0 * 2.0
-    assert dataclasses.replace(survey, widths=2.0 * survey.widths).widths[1] == 4.0
+    wider = dataclasses.replace(survey, widths=3.0 * survey.widths)
+    assert render_module.gather_radius(wider) == pytest.approx(3.0 * radius)
 
 
 @pytest.mark.parametrize("alpha", [2 / 3, 0.5, 1.0])
@@ -176,7 +177,8 @@ def test_the_radius_shrinks_as_knaus_and_zwicker_say(alpha):
     radii = np.array([render_module.radius_shrinkage(index, alpha) for index in range(20)])
     i = np.arange(1.0, 20.0)
     assert radii[0] == 1.0
-    np.testing.assert_allclose(radii[1:] ** 2 / radii[:-1] ** 2, (i + alpha) / (i + 1.0), rtol=1e-12)
+    shrinkage = radii[1:] ** 2 / radii[:-1] ** 2
+    np.testing.assert_allclose(shrinkage, (i + alpha) / (i + 1.0), rtol=1e-12)
 
 
 def test_reflectances_and_spectra_meet_band_by_band(small_scene):
@@ -202,9 +204,11 @@ def test_reflectances_and_spectra_meet_band_by_band(small_scene):
     rho = coloured.material.reflectance_at(0.5 * (fine_nm[1:] + fine_nm[:-1]))
     bands = (spectrum.band_flux(fine_nm) * rho).reshape(4, 800).sum(axis=1)
     expected = bands / spectrum.total / (np.pi * np.diff(edges_nm))
-    # No photon has met glass: all bands share one noise, and their ratios are exact.
+    # No photon has met glass: all bands share one noise, and their ratios are exact, but for the
+    # host's sums over parts of a band, 2 nm here. By the midpoint rule each of ρ's kinks, at most
+    # 0.014/nm, costs 0.014 (2 nm)²/8 of ∫ρ dλ ≥ 10 nm.
     ratios = seen / seen[..., :1]
     np.testing.assert_allclose(
-        ratios, np.broadcast_to(expected / expected[0], ratios.shape), rtol=1e-5
+        ratios, np.broadcast_to(expected / expected[0], ratios.shape), rtol=7e-4
     )
     assert seen[..., 0].mean() == pytest.approx(expected[0], rel=0.01)
