@@ -170,8 +170,9 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
 
     Returns:
         A namespace with the structs of `make_scene_structs` and the device functions
-        `intersect(scene, ray) -> Hit`, `media_indices(scene, wavelength_nm)` and
-        `interact(scene, ray, indices) -> Interaction`.
+        `intersect(scene, ray) -> Hit`,
+        `media_indices(scene, wavelength_nm)`, `interact(scene, ray, indices) -> Interaction`
+        and `split(interaction)`.
     """
     structs = make_scene_structs(precision)
     real, vec3 = structs.real, structs.vec3
@@ -233,6 +234,17 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                 met.refracted = refracted
         return met
 
+    @wp.func
+    def split(met: interaction_type):
+        """Directions of the stronger and the weaker branch; 1 if the stronger one refracts."""
+        if met.reflectance > real(0.5):
+            return met.reflected, met.refracted, 0
+        return met.refracted, met.reflected, 1
+
     return SimpleNamespace(
-        **vars(structs), intersect=intersect, media_indices=media_indices, interact=interact
+        **vars(structs),
+        intersect=intersect,
+        media_indices=media_indices,
+        interact=interact,
+        split=split,
     )

@@ -30,6 +30,7 @@ from sim.image.gather import make_gather
 from sim.photons.photon_map import make_map_structs
 from sim.photons.receivers import make_receiver_structs
 from sim.sampling.counter import hash64, to_unit
+from sim.sampling.roulette import play_roulette
 from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
 
 __all__ = ["make_film_struct", "make_render_camera"]
@@ -70,7 +71,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
     """Kernel `render_camera(start, scene, camera, photons, receivers, film)`."""
     transport = make_transport(precision, features)
     real, interact = transport.real, transport.interact
-    media_indices = transport.media_indices
+    media_indices, split = transport.media_indices, transport.split
     scene_type, ray_type = transport.Scene, transport.Ray
     map_type = make_map_structs(precision).Map
     receivers_type = make_receiver_structs(precision).Receivers
@@ -125,32 +126,25 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 if met.dispersive == 1 and band < 0:
                     alive = False
                 else:
-                    reflected = throughput * met.reflectance
-                    refracted = (throughput - reflected) * met.eta * met.eta
-                    side_ray = ray_type()
-                    side_ray.origin = met.point
-                    side_ray.prim = met.prim
-                    side_ray.face = met.face
+                    stronger, weaker, refracts = split(met)
+                    side = throughput * met.reflectance
+                    main = (throughput - side) * met.eta * met.eta
+                    if refracts == 0:
+                        swapped = side
+                        side = main
+                        main = swapped
                     ray.origin = met.point
+                    ray.direction = stronger
                     ray.prim = met.prim
                     ray.face = met.face
-                    side = reflected
-                    if met.reflectance <= real(0.5):
-                        side_ray.direction = met.reflected
-                        ray.direction = met.refracted
-                        throughput = refracted
-                    else:
-                        side_ray.direction = met.refracted
-                        ray.direction = met.reflected
-                        side = refracted
-                        throughput = reflected
-                    if side > real(0.0) and side < real(BRANCH_THRESHOLD):
-                        u = to_unit(hash64(key, wp.uint64(step)), side)
-                        if u * real(BRANCH_THRESHOLD) < side:
-                            side = real(BRANCH_THRESHOLD)
-                        else:
-                            side = real(0.0)
+                    throughput = main
+                    side = play_roulette(side, real(BRANCH_THRESHOLD), key, wp.uint64(step))
                     if side > real(0.0) and depth < STACK_SIZE:
+                        side_ray = ray_type()
+                        side_ray.origin = met.point
+                        side_ray.direction = weaker
+                        side_ray.prim = met.prim
+                        side_ray.face = met.face
                         stack_ray[depth] = side_ray
                         stack_throughput[depth] = side
                         stack_dispersed[depth] = dispersed

@@ -11,8 +11,7 @@ __all__ = [
     "HISTORY_LIMIT",
     "MAX_FACES",
     "MAX_OBJECTS",
-    "add_reflection",
-    "add_refraction",
+    "add_event",
     "is_dispersed",
     "make_photon_structs",
     "mark_dispersed",
@@ -34,19 +33,15 @@ def surface_key(prim: int, face: int, side: int):
 
 
 @wp.func
-def add_refraction(history: int):
-    """History with one more refraction (bits 0 to 9)."""
-    if (history & 1023) == 1023:
-        return history
-    return history + 1
+def add_event(history: int, refracts: int):
+    """History with one more refraction (bits 0 to 9) or specular reflection (bits 10 to 19).
 
-
-@wp.func
-def add_reflection(history: int):
-    """History with one more specular reflection (bits 10 to 19; 20 to 29 count bounces)."""
-    if ((history >> 10) & 1023) == 1023:
+    Bits 20 to 29 count bounces off diffuse surfaces. A full count stays full.
+    """
+    shift = 10 * (1 - refracts)
+    if ((history >> shift) & 1023) == 1023:
         return history
-    return history + 1024
+    return history + (1 << shift)
 
 
 @wp.func

@@ -6,7 +6,6 @@ threshold's flux. Nothing is averaged away, and the books keep what roulette add
 
 References:
     Jensen (1996), "Global illumination using photon maps", §2.1: photon tracing.
-    Arvo & Kirk (1990), "Particle transport and image synthesis", SIGGRAPH, §4: roulette.
 """
 
 import functools
@@ -27,13 +26,13 @@ from sim.photons.lamp_structs import make_lamp_structs
 from sim.photons.lamps import Lamps
 from sim.photons.photon_batch import PhotonBatch, allocate_photons
 from sim.photons.photon_structs import (
-    add_reflection,
-    add_refraction,
+    add_event,
     make_photon_structs,
     mark_dispersed,
     surface_key,
 )
-from sim.sampling.counter import fold_key, hash64, to_unit
+from sim.sampling.counter import fold_key
+from sim.sampling.roulette import play_roulette
 from sim.sampling.sobol import DIMENSIONS
 from sim.scene_data import CompiledScene
 from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
@@ -58,7 +57,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     """Kernel `trace_photons(start, scene, lamps, job, photons, counts, books)`."""
     transport = make_transport(precision, features)
     real, vec3, interact = transport.real, transport.vec3, transport.interact
-    media_indices = transport.media_indices
+    media_indices, split = transport.media_indices, transport.split
     scene_type, ray_type = transport.Scene, transport.Ray
     lamps_type = make_lamp_structs(precision).Lamps
     photon_structs = make_photon_structs(precision)
@@ -126,58 +125,44 @@ def make_trace_photons(precision: str, features: Features) -> Any:
             met = interact(scene, ray, indices)
             if met.event == EVENT_BOUNDARY:
                 history = mark_dispersed(history, met.dispersive)
-                reflected_flux = flux * met.reflectance
-                refracted_flux = flux - reflected_flux
-                side_ray = ray_type()
-                side_ray.origin = met.point
-                side_ray.prim = met.prim
-                side_ray.face = met.face
-                side_flux = reflected_flux
-                side_history = add_reflection(history)
+                stronger, weaker, refracts = split(met)
+                side_flux = flux * met.reflectance
+                if refracts == 0:
+                    side_flux = flux - side_flux
+                flux -= side_flux
+                side_history = add_event(history, 1 - refracts)
+                history = add_event(history, refracts)
                 ray.origin = met.point
+                ray.direction = stronger
                 ray.prim = met.prim
                 ray.face = met.face
-                if refracted_flux >= reflected_flux:
-                    side_ray.direction = met.reflected
-                    ray.direction = met.refracted
-                    history = add_refraction(history)
-                    flux = refracted_flux
-                else:
-                    side_ray.direction = met.refracted
-                    ray.direction = met.reflected
-                    side_history = add_refraction(history)
-                    side_flux = refracted_flux
-                    history = add_reflection(history)
-                    flux = reflected_flux
+                draw = draws + wp.uint64(step)
                 if depth == STACK_SIZE:
                     # No room for a side branch: chance chooses one of both for the light of both.
-                    u = to_unit(hash64(job.key + wp.uint64(1), draws + wp.uint64(step)), flux)
-                    if u * (flux + side_flux) < side_flux:
-                        ray.direction = side_ray.direction
+                    both = flux + side_flux
+                    if play_roulette(side_flux, both, job.key + wp.uint64(1), draw) > real(0.0):
+                        ray.direction = weaker
                         history = side_history
-                    flux += side_flux
-                elif side_flux > real(0.0):
-                    kept = side_flux
-                    if side_flux < threshold:
-                        u = to_unit(hash64(job.key + wp.uint64(1), draws + wp.uint64(step)), flux)
-                        kept = real(0.0)
-                        if u * threshold < side_flux:
-                            kept = threshold
+                    flux = both
+                else:
+                    kept = play_roulette(side_flux, threshold, job.key + wp.uint64(1), draw)
                     culled += side_flux - kept
                     if kept > real(0.0):
+                        side_ray = ray_type()
+                        side_ray.origin = met.point
+                        side_ray.direction = weaker
+                        side_ray.prim = met.prim
+                        side_ray.face = met.face
                         stack_ray[depth] = side_ray
                         stack_flux[depth] = kept
                         stack_history[depth] = side_history
                         depth += 1
-                if flux < threshold:
-                    # Else a path that is reflected again and again, and grows ever fainter, would
-                    # use up the interactions that the branches behind it need.
-                    u = to_unit(hash64(job.key + wp.uint64(2), draws + wp.uint64(step)), flux)
-                    culled += flux
-                    alive = u * threshold < flux
-                    if alive:
-                        flux = threshold
-                        culled -= threshold
+                # The stronger branch plays as well: a path reflected again and again, and ever
+                # fainter, would use up the interactions that the branches behind it need.
+                kept = play_roulette(flux, threshold, job.key + wp.uint64(2), draw)
+                culled += flux - kept
+                flux = kept
+                alive = flux > real(0.0)
             else:
                 alive = False
                 if met.event == EVENT_DEPOSIT:
