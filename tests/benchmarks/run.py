@@ -5,7 +5,8 @@ Nephroid on one thread, with `photon_tracer.c` on one, and with Nephroid on two,
 prints the ratios of their rates: medians over the repetitions, and the least and the greatest.
 
 One thread is timed by the process's CPU time, two against one by the clock on the wall, so the
-second ratio wants a machine with nothing else to do. Nothing is asserted about speed; but the
+second ratio wants a machine with nothing else to do: it cannot exceed the cores that the system
+granted the two threads, which are printed below it. Nothing is asserted about speed; but the
 deposits and the energy books of the two programs must be the same to rounding, since only equal
 work compares.
 """
@@ -179,6 +180,7 @@ def compare(name: str, photons: int, repetitions: int, compiler: str | None) -> 
     against_c: list[float] = []
     threads: list[float] = []
     cost: list[float] = []
+    cores: list[float] = []
     with tempfile.TemporaryDirectory() as folder:
         rival = Rival(compiler, Path(folder), nephroid, name) if compiler else None
         for _ in range(repetitions):
@@ -189,12 +191,15 @@ def compare(name: str, photons: int, repetitions: int, compiler: str | None) -> 
                 check_equal_work(name, totals, np.array(result))
                 against_c.append(spent / cpu)
             one = seconds(time.perf_counter, lambda: nephroid.trace(threads=1))
+            cpu = time.process_time()
             two = seconds(time.perf_counter, lambda: nephroid.trace(threads=2))
+            cores.append((time.process_time() - cpu) / two)
             threads.append(one / two)
     print(f"{name}: {nephroid.photons} photons, {totals[0]:.0f} deposits")
     print(f"  Nephroid, 1 thread             {summary(cost)} ns of CPU time a photon")
     print(f"  Nephroid / C, 1 thread         {summary(against_c) if against_c else 'skipped'}")
-    print(f"  Nephroid, 2 threads / 1 thread {summary(threads)}", flush=True)
+    print(f"  Nephroid, 2 threads / 1 thread {summary(threads)}")
+    print(f"    cores it had meanwhile       {summary(cores)}", flush=True)
 
 
 def check_equal_work(name: str, ours: FloatArray, theirs: FloatArray) -> None:
