@@ -101,11 +101,13 @@ def make_intersect(precision: str, features: Features):
 
     @wp.func
     def intersect(scene: scene_type, ray: ray_type):
+        # `while`, not `for`: see `intersect_polyhedron`.
         hit = hit_type()
         hit.t = real(wp.inf)
         hit.prim = -1
         if wp.static(features.spheres):
-            for i in range(scene.sphere_count):
+            i = int(0)
+            while i < scene.sphere_count:
                 sphere = scene.spheres[i]
                 local = ray.origin - sphere.centre
                 t = intersect_sphere(local, ray.direction, sphere.radius, ray.prim == sphere.prim)
@@ -114,8 +116,10 @@ def make_intersect(precision: str, features: Features):
                     hit.prim = sphere.prim
                     hit.face = 0
                     hit.normal = renormalize((local + ray.direction * t) / sphere.radius)
+                i += 1
         if wp.static(features.flats):
-            for i in range(scene.flat_count):
+            i = int(0)
+            while i < scene.flat_count:
                 flat = scene.flats[i]
                 if ray.prim != flat.prim:
                     local = ray.origin - flat.centre
@@ -129,8 +133,10 @@ def make_intersect(precision: str, features: Features):
                             hit.prim = flat.prim
                             hit.face = 0
                             hit.normal = normal
+                i += 1
         if wp.static(features.polyhedra):
-            for i in range(scene.polyhedron_count):
+            i = int(0)
+            while i < scene.polyhedron_count:
                 body = scene.polyhedra[i]
                 leaving_face = -1
                 if ray.prim == body.prim:
@@ -144,8 +150,10 @@ def make_intersect(precision: str, features: Features):
                     hit.prim = body.prim
                     hit.face = face
                     hit.normal = scene.planes[face].normal
+                i += 1
         if wp.static(features.lenses):
-            for i in range(scene.lens_count):
+            i = int(0)
+            while i < scene.lens_count:
                 lens = scene.lenses[i]
                 leaving_face = -1
                 if ray.prim == lens.prim:
@@ -159,6 +167,7 @@ def make_intersect(precision: str, features: Features):
                     hit.face = face
                     normal = lens_normal(lens, face, origin + direction * t)
                     hit.normal = wp.normalize(wp.transpose(lens.frame) * normal)
+                i += 1
         return hit
 
     return intersect

@@ -32,7 +32,10 @@ def intersect_polyhedron(
     face_enter = int(-1)
     face_exit = int(-1)
     leaves = leaving_face >= first and leaving_face < first + count
-    for face in range(first, first + count):
+    # `while`, not `for`: Warp compiles a range of run-time bounds to an iterator whose sign and
+    # stride are tested anew at every turn.
+    face = int(first)
+    while face < first + count:
         plane = planes[face]
         approach = wp.dot(plane.normal, direction)
         distance = plane.offset - wp.dot(plane.normal, origin)
@@ -53,6 +56,7 @@ def intersect_polyhedron(
             # Parallel to a face and beyond it: a miss. (A start on an edge can lie beyond one of
             # its faces by rounding, and is inside all the same.)
             t_exit = -type(origin[0])(wp.inf)
+        face += 1
 
     if leaves:
         if face_exit < 0 or t_exit == -type(origin[0])(wp.inf):

@@ -19,8 +19,8 @@ __all__ = ["Aim", "View", "find_aims"]
 
 FloatArray = npt.NDArray[np.float64]
 
-SPECULAR_SHARE = 0.35
-RECEIVER_SHARE = 0.57
+SPECULAR_SHARE = 0.2
+RECEIVER_SHARE = 0.6
 """Shares of a lamp's photons aimed at specular objects and at receivers; the rest go as the lamp
 radiates. They divide effort, not light: any positive shares give the same expected picture."""
 

@@ -38,7 +38,7 @@ from sim.sampling.directions import (
 from sim.sampling.sobol import make_sobol_uniform
 from sim.scene_structs import make_ray_structs
 
-__all__ = ["make_emission"]
+__all__ = ["make_emission", "make_wavelength_function"]
 
 @functools.cache
 def make_wavelength_function(precision: str) -> object:
@@ -153,15 +153,14 @@ def make_emission(precision: str) -> object:
     """Device function `emit(lamps, emitter, target, seed_row, index, key)`.
 
     Returns:
-        The function, which returns (Ray, wavelength [nm], flux [W]) of photon `index` of the
-        sequence that belongs to one emitter and one of its targets.
+        The function, which returns (Ray, u, flux [W]) of photon `index` of the sequence that
+        belongs to one emitter and one of its targets; u in [0, 1) stands for its wavelength.
     """
     structs = make_lamp_structs(precision)
     real, lamps_type = structs.real, structs.Lamps
     ray_type = make_ray_structs(precision).Ray
     densities = make_density_functions(precision)
     own_density, target_density = densities.own_density, densities.target_density
-    sample_wavelength = make_wavelength_function(precision)
     sample_direction = make_direction_function(precision)
     sample_line = make_line_function(precision)
     sobol_uniform = make_sobol_uniform(precision)
@@ -193,7 +192,6 @@ def make_emission(precision: str) -> object:
         ray = ray_type()
         ray.prim = -1
         ray.face = -1
-        wavelength_nm = sample_wavelength(lamps, emitter, u2)
         if emitter.kind == BEAM:
             # A beam aims itself: its profile gets the best two dimensions.
             if emitter.round == 1:
@@ -204,7 +202,7 @@ def make_emission(precision: str) -> object:
             ray.origin = emitter.centre + emitter.frame[0] * (x * emitter.half_u)
             ray.origin += emitter.frame[1] * (y * emitter.half_v)
             ray.direction = sample_direction(emitter, target, ray.origin, u3, u4)
-            return ray, wavelength_nm, emitter.flux / target.photons
+            return ray, u2, emitter.flux / target.photons
 
         origin, direction = sample_line(lamps, emitter, target, u0, u1, u3, u4)
         flux = real(0.0)
@@ -223,6 +221,6 @@ def make_emission(precision: str) -> object:
             flux = emitter.flux * own / density
         ray.origin = origin
         ray.direction = direction
-        return ray, wavelength_nm, flux
+        return ray, u2, flux
 
     return emit

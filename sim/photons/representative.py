@@ -39,7 +39,7 @@ def make_emit_rays(precision: str) -> Any:
         out_directions: wp.array(dtype=vec3),
     ):
         i = wp.tid()
-        ray, _wavelength_nm, _flux = emit(lamps, emitter, target, seed_row, wp.uint32(i), key)
+        ray, _u, _flux = emit(lamps, emitter, target, seed_row, wp.uint32(i), key)
         out_origins[i] = ray.origin
         out_directions[i] = ray.direction
 

@@ -20,7 +20,7 @@ import warp as wp
 
 from sim.features import Features
 from sim.launch import cut_ranges, launch_ranges
-from sim.photons.emission import make_emission
+from sim.photons.emission import make_emission, make_wavelength_function
 from sim.photons.energy import BOOK_COLUMNS, EnergyBooks
 from sim.photons.lamp_structs import make_lamp_structs
 from sim.photons.lamps import Lamps
@@ -47,7 +47,12 @@ BRANCH_THRESHOLD = 0.01
 
 STACK_SIZE = wp.constant(8)
 
-_SLOTS_PER_PHOTON = 4
+COLOURS = wp.constant(4)
+"""Wavelengths, evenly spread over the lamp's distribution, of a photon that meets a dispersive
+surface first: light that leaves the glass nearly where it would without dispersion stays white
+from few photons."""
+
+_SLOTS_PER_PHOTON = 12
 """Room for deposits: on the CPU it takes address space, not memory, until it is written to. A
 pass that needs more is traced again with room for exactly what its kernels counted."""
 
@@ -63,6 +68,8 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
     emit = make_emission(precision)
+    sample_wavelength = make_wavelength_function(precision)
+    intersect = transport.intersect
 
     @wp.func
     def store(
@@ -79,29 +86,25 @@ def make_trace_photons(precision: str, features: Features) -> Any:
         photons.history[slot] = history
         photons.emitter[slot] = emitter
 
-    @wp.kernel(module="unique", enable_backward=False)
-    def trace_photons(
-        start: int,
-        scene: scene_type,
-        lamps: lamps_type,
-        job: job_type,
-        out_photons: photons_type,
+    @wp.func
+    def follow(
+        scene: scene_type, job: job_type, start_ray: ray_type, wavelength_nm: real,
+        start_flux: real, draws: wp.uint64, out_photons: photons_type,
         out_counts: wp.array(dtype=int),
-        out_books: wp.array2d(dtype=wp.float64),
     ):
-        index = wp.uint32(start + wp.tid())
-        ray, wavelength_nm, flux = emit(
-            lamps, job.emitter, job.target, job.seed_row, index, job.key
-        )
+        """Follow a photon of one wavelength and all its branches; see where its flux goes.
+
+        Returns flux deposited, absorbed, escaped and culled.
+        """
         indices = media_indices(scene, wavelength_nm)
-        emitted = flux
         deposited = real(0.0)
         absorbed = real(0.0)
         escaped = real(0.0)
         culled = real(0.0)
+        ray = start_ray
+        flux = start_flux
         threshold = flux * job.branch_threshold
         history = int(0)
-        draws = wp.uint64(index) << wp.uint64(24)
 
         stack_ray = wp.zeros(shape=(8,), dtype=ray_type)
         stack_flux = wp.zeros(shape=(8,), dtype=real)
@@ -183,11 +186,41 @@ def make_trace_photons(precision: str, features: Features) -> Any:
             culled += flux
         for k in range(depth):
             culled += stack_flux[k]
-        wp.atomic_add(out_books, job.range_row, 0, wp.float64(emitted))
-        wp.atomic_add(out_books, job.range_row, 1, wp.float64(deposited))
-        wp.atomic_add(out_books, job.range_row, 2, wp.float64(absorbed))
-        wp.atomic_add(out_books, job.range_row, 3, wp.float64(escaped))
-        wp.atomic_add(out_books, job.range_row, 4, wp.float64(culled))
+        return deposited, absorbed, escaped, culled
+
+    @wp.kernel(module="unique", enable_backward=False)
+    def trace_photons(
+        start: int,
+        scene: scene_type,
+        lamps: lamps_type,
+        job: job_type,
+        out_photons: photons_type,
+        out_counts: wp.array(dtype=int),
+        out_books: wp.array2d(dtype=wp.float64),
+    ):
+        index = wp.uint32(start + wp.tid())
+        ray, u_wavelength, flux = emit(
+            lamps, job.emitter, job.target, job.seed_row, index, job.key
+        )
+        wp.atomic_add(out_books, job.range_row, 0, wp.float64(flux))
+        # What meets a dispersive surface first is followed in several colours at once.
+        colours = int(1)
+        first = intersect(scene, ray)
+        if first.prim >= 0:
+            if scene.bodies[first.prim].dispersive == 1:
+                colours = int(COLOURS)
+        flux /= real(colours)
+        for colour in range(colours):
+            u = u_wavelength + real(colour) / real(colours)
+            wavelength_nm = sample_wavelength(lamps, lamps.emitters[job.emitter], u - wp.floor(u))
+            draws = (wp.uint64(index) << wp.uint64(24)) + (wp.uint64(colour) << wp.uint64(17))
+            deposited, absorbed, escaped, culled = follow(
+                scene, job, ray, wavelength_nm, flux, draws, out_photons, out_counts
+            )
+            wp.atomic_add(out_books, job.range_row, 1, wp.float64(deposited))
+            wp.atomic_add(out_books, job.range_row, 2, wp.float64(absorbed))
+            wp.atomic_add(out_books, job.range_row, 3, wp.float64(escaped))
+            wp.atomic_add(out_books, job.range_row, 4, wp.float64(culled))
 
     return trace_photons
 

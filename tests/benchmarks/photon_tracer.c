@@ -71,7 +71,7 @@ typedef struct {
     int sphere_count, flat_count, plane_count, polyhedron_count;
     int body_count, media_count, emitter_count, target_count, segment_count, stream_count, cdf_count;
     uint32_t sobol[DIMENSIONS * SOBOL_ROW];
-    int max_interactions, slots_per_photon;
+    int max_interactions, slots_per_photon, colours;
     double branch_threshold;
 } Scene;
 
@@ -282,8 +282,8 @@ static inline void sample_line(
     ray->origin = origin;
 }
 
-/* Photon `i` of a stream: its ray and wavelength; returns its flux. */
-static inline double emit(const Scene *scene, const Stream *stream, uint32_t i, Ray *ray, double *wavelength_nm) {
+/* Photon `i` of a stream: its ray, and the number that stands for its wavelength; returns its flux. */
+static inline double emit(const Scene *scene, const Stream *stream, uint32_t i, Ray *ray, double *u_wavelength) {
     const Emitter *emitter = scene->emitters + stream->emitter;
     const Target *target = scene->targets + stream->target;
     uint64_t low = hash64(stream->key, 2 * (uint64_t)i), low2 = hash64(stream->key, 2 * (uint64_t)i + 1);
@@ -293,7 +293,7 @@ static inline double emit(const Scene *scene, const Stream *stream, uint32_t i, 
         u[d] = sobol_uniform(scene->sobol + d * SOBOL_ROW, i, stream->seeds[d], low_bits[d]);
 
     ray->prim = ray->face = -1;
-    *wavelength_nm = sample_wavelength(scene, emitter, u[2]);
+    *u_wavelength = u[2];
     if (emitter->kind == BEAM) {
         double x = 2.0 * u[0] - 1.0, y = 2.0 * u[1] - 1.0;
         if (emitter->round) sample_disk(u[0], u[1], &x, &y);
@@ -475,19 +475,17 @@ static inline void store(Photons *photons, Vec point, Vec direction, double wave
     photons->emitter[slot] = emitter;
 }
 
-/* The number in [0, 1) that decides at interaction `step` of photon i; `purpose` 1: side branch. */
-static inline double roulette(const Stream *stream, int purpose, uint32_t i, int step) {
-    uint64_t bits = hash64(stream->key + (uint64_t)purpose, ((uint64_t)i << 24) + (uint64_t)step);
+/* The number in [0, 1) that decides at interaction `step` of a photon; `purpose` 1: side branch. */
+static inline double roulette(const Stream *stream, int purpose, uint64_t draws, int step) {
+    uint64_t bits = hash64(stream->key + (uint64_t)purpose, draws + (uint64_t)step);
     return (double)(uint32_t)(bits >> 40) * 0x1p-24;
 }
 
-static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, Photons *photons, Books *books) {
+/* A photon of one wavelength and all its branches. */
+static void follow(const Scene *scene, const Stream *stream, Ray ray, double wavelength_nm, double flux,
+                   uint64_t draws, Photons *photons, Books *books) {
     struct { Ray ray; double flux; int32_t history; } stack[STACK_SIZE];
-    Ray ray;
-    double wavelength_nm, indices[MAX_MEDIA];
-    double flux = emit(scene, stream, i, &ray, &wavelength_nm);
-    books->emitted += flux;
-    if (!(flux > 0.0)) return;
+    double indices[MAX_MEDIA];
     media_indices(scene, wavelength_nm, indices);
     const double threshold = flux * scene->branch_threshold;
     int32_t history = 0;
@@ -530,7 +528,7 @@ static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, P
                 ray.prim = hit.prim;
                 ray.face = hit.face;
                 if (depth == STACK_SIZE) {
-                    if (roulette(stream, 1, i, step) * (flux + side_flux) < side_flux) {
+                    if (roulette(stream, 1, draws, step) * (flux + side_flux) < side_flux) {
                         ray.direction = side_direction;
                         history = side_history;
                     }
@@ -538,7 +536,7 @@ static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, P
                 } else if (side_flux > 0.0) {
                     double kept = side_flux;
                     if (side_flux < threshold)
-                        kept = roulette(stream, 1, i, step) * threshold < side_flux ? threshold : 0.0;
+                        kept = roulette(stream, 1, draws, step) * threshold < side_flux ? threshold : 0.0;
                     books->culled += side_flux - kept;
                     if (kept > 0.0) {
                         stack[depth].ray = (Ray){point, side_direction, hit.prim, hit.face};
@@ -549,7 +547,7 @@ static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, P
                 }
                 if (flux >= threshold) continue;
                 books->culled += flux;
-                if (roulette(stream, 2, i, step) * threshold < flux) {
+                if (roulette(stream, 2, draws, step) * threshold < flux) {
                     flux = threshold;
                     books->culled -= threshold;
                     continue;
@@ -564,6 +562,24 @@ static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, P
     }
     books->culled += flux;
     while (depth > 0) books->culled += stack[--depth].flux;
+}
+
+/* Photon `i` of a stream, in several colours if what it meets first is dispersive. */
+static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, Photons *photons, Books *books) {
+    Ray ray;
+    double u;
+    double flux = emit(scene, stream, i, &ray, &u);
+    books->emitted += flux;
+    if (!(flux > 0.0)) return;
+    Hit first = {0};
+    int colours = intersect(scene, &ray, &first) && scene->bodies[first.prim].dispersive ? scene->colours : 1;
+    flux /= colours;
+    for (int colour = 0; colour < colours; colour++) {
+        double v = u + (double)colour / colours;
+        double wavelength_nm = sample_wavelength(scene, scene->emitters + stream->emitter, v - floor(v));
+        follow(scene, stream, ray, wavelength_nm, flux,
+               ((uint64_t)i << 24) + ((uint64_t)colour << 17), photons, books);
+    }
 }
 
 /* ---------------------------------------------------------------- input and timing */
@@ -642,10 +658,11 @@ static void read_scene(const char *path, Scene *scene) {
     double *sobol = read_section(file, DIMENSIONS * SOBOL_ROW, &rows);
     for (int k = 0; k < DIMENSIONS * SOBOL_ROW; k++) scene->sobol[k] = (uint32_t)sobol[k];
     free(sobol);
-    double *limits = read_section(file, 3, &rows);
+    double *limits = read_section(file, 4, &rows);
     scene->max_interactions = (int)limits[0];
     scene->branch_threshold = limits[1];
     scene->slots_per_photon = (int)limits[2];
+    scene->colours = (int)limits[3];
     free(limits);
     fclose(file);
     if (scene->media_count > MAX_MEDIA) { fprintf(stderr, "photon_tracer: too many media\n"); exit(1); }

@@ -94,7 +94,16 @@ def sections(compiled: CompiledScene, lamps: Lamps) -> list[FloatArray]:
         ),
         stream_rows(lamps),
         sobol_tables().astype(np.float64).reshape(1, -1),
-        np.array([[MAX_INTERACTIONS, tracing.BRANCH_THRESHOLD, tracing._SLOTS_PER_PHOTON]]),
+        np.array(
+            [
+                [
+                    MAX_INTERACTIONS,
+                    tracing.BRANCH_THRESHOLD,
+                    tracing._SLOTS_PER_PHOTON,
+                    int(tracing.COLOURS),
+                ]
+            ]
+        ),
     ]
 
 
