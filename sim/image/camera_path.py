@@ -102,6 +102,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
         alive = bool(True)
         ray = camera_ray
         throughput = weight
+        threshold = weight * real(BRANCH_THRESHOLD)
         dispersed = int(0)
         met_dispersive = int(0)
         for step in range(MAX_INTERACTIONS):
@@ -138,7 +139,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
                     ray.prim = met.prim
                     ray.face = met.face
                     throughput = main
-                    side = play_roulette(side, real(BRANCH_THRESHOLD), key, wp.uint64(step))
+                    side = play_roulette(side, threshold, key, wp.uint64(step))
                     if side > real(0.0) and depth < STACK_SIZE:
                         side_ray = ray_type()
                         side_ray.origin = met.point
@@ -201,8 +202,10 @@ def make_render_camera(precision: str, features: Features) -> Any:
             key, film.sample, pixel,
         )
         if dispersed == 1:
-            deal = int(key >> wp.uint64(33))
-            for band in range((pixel + film.turn) % film.turns, receivers.bands, film.turns):
+            deal = int(key >> wp.uint64(40))
+            # Neighbours to the right and below have turns of their own: no stripes.
+            place = pixel % camera.width + pixel // camera.width * (film.turns // 2)
+            for band in range((place + film.turn) % film.turns, receivers.bands, film.turns):
                 wavelength_nm = receivers.first_edge_nm
                 wavelength_nm += receivers.band_width_nm * (real(band) + inside_band)
                 follow(
