@@ -52,7 +52,7 @@ COLOURS = wp.constant(4)
 surface first: light that leaves the glass nearly where it would without dispersion stays white
 from few photons."""
 
-_SLOTS_PER_PHOTON = 12
+_SLOTS_PER_PHOTON = 6 * int(COLOURS)
 """Room for deposits: on the CPU it takes address space, not memory, until it is written to. A
 pass that needs more is traced again with room for exactly what its kernels counted."""
 
