@@ -38,10 +38,11 @@ def launch_ranges(
     *,
     device: str,
     threads: int,
+    run: int = 1,
     stop: threading.Event | None = None,
     on_done: Callable[[int], None] | None = None,
 ) -> None:
-    """Launch `kernel` once a range, `count` threads each, and wait for all.
+    """Launch `kernel` once a range, and wait for all.
 
     Args:
         kernel: its first parameter is the range's start (int); the rest come from `inputs_of`.
@@ -49,6 +50,7 @@ def launch_ranges(
         inputs_of: maps a range's number to the kernel's remaining arguments.
         device: "cpu" or a CUDA device.
         threads: CPU threads; a GPU is fed from one thread.
+        run: indices that one thread of the kernel covers in turn, from start + tid · run on.
         stop: once set, from another thread, no further range is started and the call returns.
         on_done: told the number of finished indices after each range, from the calling thread.
 
@@ -59,7 +61,7 @@ def launch_ranges(
     # a time; only the native call is in several. (Loading the module beforehand would compile it
     # once more, for the block size of a GPU.)
     with _PACKING:
-        commands = _record(kernel, ranges, inputs_of, device)
+        commands = _record(kernel, ranges, inputs_of, device, run)
     pending: queue.SimpleQueue[int] = queue.SimpleQueue()
     for number in range(len(ranges)):
         pending.put(number)
@@ -96,12 +98,20 @@ def launch_ranges(
 
 
 def _record(
-    kernel: Any, ranges: Sequence[Range], inputs_of: Callable[[int], list[Any]], device: str
+    kernel: Any,
+    ranges: Sequence[Range],
+    inputs_of: Callable[[int], list[Any]],
+    device: str,
+    run: int,
 ) -> list[Any]:
     """A recorded launch for every range."""
     return [
         wp.launch(
-            kernel, dim=count, inputs=[start, *inputs_of(number)], device=device, record_cmd=True
+            kernel,
+            dim=-(-count // run),
+            inputs=[start, *inputs_of(number)],
+            device=device,
+            record_cmd=True,
         )
         for number, (start, count) in enumerate(ranges)
     ]

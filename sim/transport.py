@@ -115,7 +115,9 @@ def make_intersect(precision: str, features: Features):
                     hit.t = t
                     hit.prim = sphere.prim
                     hit.face = 0
-                    hit.normal = renormalize((local + ray.direction * t) / sphere.radius)
+                    hit.normal = renormalize(
+                        (local + ray.direction * t) * (real(1.0) / sphere.radius)
+                    )
                 i += 1
         if wp.static(features.flats):
             i = int(0)
@@ -180,13 +182,13 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
     Returns:
         A namespace with the structs of `make_scene_structs` and the device functions
         `intersect(scene, ray) -> Hit`,
-        `media_indices(scene, wavelength_nm)`, `interact(scene, ray, indices) -> Interaction`
-        and `split(interaction)`.
+        `media_indices(scene, wavelength_nm)`, `scatter(scene, ray, hit, indices) -> Interaction`,
+        `interact(scene, ray, indices)`, which is both in one, and `split(interaction)`.
     """
     structs = make_scene_structs(precision)
     real, vec3 = structs.real, structs.vec3
     scene_type, ray_type = structs.Scene, structs.Ray
-    interaction_type = structs.Interaction
+    interaction_type, hit_type = structs.Interaction, structs.Hit
     intersect = make_intersect(precision, features)
     indices_type = wp.types.vector(length=features.media_count, dtype=real)
     media_indices = make_media_function(precision, features)
@@ -207,10 +209,9 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         return 0, real(0.5) * (r_s + r_p), reflected, refracted
 
     @wp.func
-    def interact(scene: scene_type, ray: ray_type, indices: indices_type):
+    def scatter(scene: scene_type, ray: ray_type, hit: hit_type, indices: indices_type):
         # Structs are filled field by field: a struct assigned whole inside a branch is copied
         # at every merge of the compiled code, which made this step four times slower.
-        hit = intersect(scene, ray)
         met = interaction_type()
         met.event = EVENT_ESCAPE
         met.t = hit.t
@@ -244,6 +245,10 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         return met
 
     @wp.func
+    def interact(scene: scene_type, ray: ray_type, indices: indices_type):
+        return scatter(scene, ray, intersect(scene, ray), indices)
+
+    @wp.func
     def split(met: interaction_type):
         """Directions of the stronger and the weaker branch; 1 if the stronger one refracts."""
         if met.reflectance > real(0.5):
@@ -254,6 +259,7 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         **vars(structs),
         intersect=intersect,
         media_indices=media_indices,
+        scatter=scatter,
         interact=interact,
         split=split,
     )

@@ -45,21 +45,16 @@ def make_wavelength_function(precision: str) -> object:
     """Device function `sample_wavelength(lamps, emitter, u)` [nm], density as the spectrum."""
     structs = make_lamp_structs(precision)
     real, lamps_type, emitter_type = structs.real, structs.Lamps, structs.Emitter
+    locate = make_cell_functions(precision).locate
 
     @wp.func
     def sample_wavelength(lamps: lamps_type, emitter: emitter_type, u: real):
-        low = emitter.first_segment
-        high = emitter.first_segment + emitter.segment_count
-        while high - low > 1:
-            middle = (low + high) // 2
-            if lamps.segments[middle].cdf_low <= u:
-                low = middle
-            else:
-                high = middle
-        segment = lamps.segments[low]
+        cell, v = locate(
+            lamps.cdf, lamps.guide, emitter.first_cdf, emitter.segment_count, u
+        )
+        segment = lamps.segments[emitter.first_segment + cell]
         if segment.width_nm == real(0.0):
             return segment.wavelength_nm
-        v = (u - segment.cdf_low) / (segment.cdf_high - segment.cdf_low)
         v = wp.clamp(v, real(0.0), real(1.0))
         d0 = segment.density_low
         d1 = segment.density_high
@@ -132,14 +127,17 @@ def make_line_function(precision: str) -> object:
             origin += emitter.frame[1] * ((u4 + u4 - real(1.0)) * emitter.half_v)
         if target.kind == AIM_AREA:
             first = target.first_cdf
-            cell, s = invert_cells(lamps.cdf, first, u0)
-            _j, t = invert_cells(lamps.cdf, first + (cell + 1) * (AIM_CELLS + 1), u1)
+            cell, s = invert_cells(lamps.cdf, lamps.guide, first, u0)
+            row = first + (cell + 1) * (AIM_CELLS + 1)
+            _j, t = invert_cells(lamps.cdf, lamps.guide, row, u1)
             point = target.centre + target.frame[0] * ((s + s - real(1.0)) * target.half_u)
             point += target.frame[1] * ((t + t - real(1.0)) * target.half_v)
             if emitter.kind == SPHERE_LAMP:
-                way = wp.normalize(point - emitter.centre)
+                way = point - emitter.centre
+                way *= real(1.0) / wp.length(way)
                 origin = point_of_sphere(emitter, way, u3, u4)
-            return origin, wp.normalize(point - origin)
+            line = point - origin
+            return origin, line * (real(1.0) / wp.length(line))
         direction = sample_direction(emitter, target, origin, u0, u1)
         if emitter.kind == SPHERE_LAMP:
             origin = point_of_sphere(emitter, direction, u3, u4)
@@ -213,11 +211,13 @@ def make_emission(precision: str) -> object:
         if own > real(0.0):
             density = real(0.0)
             first = emitter.first_target
-            for other in range(first, first + emitter.target_count):
+            other = int(first)
+            while other < first + emitter.target_count:
                 chosen = lamps.targets[other]
                 density += chosen.photons * target_density(
                     lamps, emitter, chosen, origin, direction, other == target_row
                 )
+                other += 1
             flux = emitter.flux * own / density
         ray.origin = origin
         ray.direction = direction

@@ -58,6 +58,7 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         target_count: int
         first_segment: int
         segment_count: int
+        first_cdf: int  # of its segments, in Lamps.cdf
 
     @wp.struct
     class Target:
@@ -80,15 +81,13 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
     class Segment:
         """A piece of a spectrum: density linear from `density_low` to `density_high` over `width`.
 
-        A spectral line has no width. `cdf_low` and `cdf_high` bound its share of the flux.
+        A spectral line has no width.
         """
 
         wavelength_nm: real
         width_nm: real
         density_low: real
         density_high: real
-        cdf_low: real
-        cdf_high: real
 
     @wp.struct
     class Lamps:
@@ -96,6 +95,7 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         targets: wp.array(dtype=Target)
         segments: wp.array(dtype=Segment)
         cdf: wp.array(dtype=real)
+        guide: wp.array(dtype=int)
         sobol: wp.array(dtype=wp.uint32)
         seeds: wp.array(dtype=wp.uint32)
 

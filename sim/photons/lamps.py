@@ -10,6 +10,7 @@ import warp as wp
 import scenes
 from sim.photons.aiming import View, find_aims
 from sim.photons.lamp_structs import (
+    AIM_CELLS,
     BEAM,
     POINT,
     RECTANGLE_LAMP,
@@ -98,18 +99,20 @@ def compile_lamps(
     distributions: list[FloatArray] = []
     for row, (emitter, spectrum, flux) in enumerate(shining):
         aims = find_aims(compiled, emitter, view)
-        pieces = _segments(spectrum)
+        pieces, shares = _segments(spectrum)
         emitters.append(
             (
                 *_emitter_row(compiled, emitter), flux,
                 len(targets), len(aims), len(segments), len(pieces),
+                sum(len(one) for one in distributions),
             )
         )
         segments.extend(pieces)
+        distributions.append(shares)
         for aim, count in zip(aims, _share(counts[row], [a.share for a in aims]), strict=True):
             streams.append(Stream(row, len(targets), count))
             first_cdf = sum(len(one) for one in distributions)
-            distributions.append(aim.distribution)
+            distributions.extend(aim.distribution.reshape(-1, int(AIM_CELLS) + 1))
             targets.append(
                 (
                     aim.kind, aim.centre, aim.frame, *aim.half, aim.radius, first_cdf,
@@ -121,7 +124,9 @@ def compile_lamps(
     data.targets = struct_array(structs.Target, targets, compiled.device)
     data.segments = struct_array(structs.Segment, segments, compiled.device)
     data.sobol = wp.array(sobol_tables(), dtype=wp.uint32, device=compiled.device)
-    cdf = np.concatenate([*distributions, np.zeros(1)])
+    cdf = np.concatenate(distributions)
+    guide = np.concatenate([_guide(one) for one in distributions])
+    data.guide = wp.array(guide, dtype=int, device=compiled.device)
     types = precision_types(compiled.precision)
     data.cdf = wp.array(cdf.astype(types.dtype), dtype=types.real, device=compiled.device)
     flux = sum(flux for _, _, flux in shining)
@@ -162,8 +167,8 @@ def _share(total: int, weights: list[float]) -> list[int]:
     return [int(count) for count in counts]
 
 
-def _segments(spectrum: EmissionSpectrum) -> list[tuple[float, ...]]:
-    """Rows of Segment: the continuous part's trapezoids, then the lines, with their shares."""
+def _segments(spectrum: EmissionSpectrum) -> tuple[list[tuple[float, ...]], FloatArray]:
+    """Rows of Segment (trapezoids, then lines), and the distribution function over them."""
     knots, density = spectrum.wavelength_nm, spectrum.density
     rows = []
     for i in range(len(knots) - 1):
@@ -175,7 +180,14 @@ def _segments(spectrum: EmissionSpectrum) -> list[tuple[float, ...]]:
         rows.append((float(line_nm), 0.0, 0.0, 0.0, float(flux)))
     edges = np.concatenate([[0.0], np.cumsum([row[-1] for row in rows])])
     edges /= edges[-1]
-    return [(*row[:-1], edges[i], edges[i + 1]) for i, row in enumerate(rows)]
+    return [row[:-1] for row in rows], edges
+
+
+def _guide(cdf: FloatArray) -> npt.NDArray[np.int32]:
+    """Cell of a distribution function over n cells at u = 0, 1/n, … 1 (n + 1 numbers)."""
+    cells = len(cdf) - 1
+    found = np.searchsorted(cdf[1:], np.arange(cells + 1) / cells, side="right")
+    return np.minimum(found, cells - 1).astype(np.int32)
 
 
 def _emitter_row(compiled: CompiledScene, emitter: Any) -> tuple[Any, ...]:

@@ -88,6 +88,8 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         range_row: int
         first_slot: int
         slot_count: int
+        run: int  # photons a thread traces
+        stop: int  # the range's end
         max_interactions: int
         branch_threshold: real
 

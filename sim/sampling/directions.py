@@ -85,4 +85,6 @@ def to_world(x: Any, y: Any, z: Any, axis: Any):
     b = axis[0] * axis[1] * a
     u = type(axis)(one + sign * axis[0] * axis[0] * a, sign * b, -sign * axis[0])
     v = type(axis)(b, sign + axis[1] * axis[1] * a, -axis[1])
-    return wp.normalize(u * x + v * y + axis * z)
+    world = u * x + v * y + axis * z
+    # Of unit length but for rounding, which one Newton step of 1/|d| takes away.
+    return world * (type(x)(1.5) - type(x)(0.5) * wp.dot(world, world))

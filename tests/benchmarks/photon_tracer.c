@@ -52,6 +52,7 @@ typedef struct { int formula; double c[8]; } Medium;
 typedef struct {
     Vec centre, u, v, axis;
     double half_u, half_v, radius, sin2_half, flux;
+    const double *cdf;
     int kind, round, first_target, target_count, first_segment, segment_count;
 } Emitter;
 typedef struct {
@@ -60,7 +61,7 @@ typedef struct {
     const double *cdf;
     int kind;
 } Target;
-typedef struct { double wavelength_nm, width_nm, density_low, density_high, cdf_low, cdf_high; } Segment;
+typedef struct { double wavelength_nm, width_nm, density_low, density_high; } Segment;
 typedef struct { int emitter, target; uint32_t photons, seeds[DIMENSIONS]; uint64_t key; } Stream;
 
 typedef struct {
@@ -155,19 +156,28 @@ static inline Vec to_world(Vec local, Vec axis) {
     double sign = copysign(1.0, axis.z), a = -1.0 / (sign + axis.z), b = axis.x * axis.y * a;
     Vec u = vec(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);
     Vec v = vec(b, sign + axis.y * axis.y * a, -axis.y);
-    return normalize(along(along(scale(u, local.x), v, local.y), axis, local.z));
+    return renormalize(along(along(scale(u, local.x), v, local.y), axis, local.z));
+}
+
+/* Which of `count` cells the distribution function reaches u in, and how far into it. */
+static inline int locate(const double *cdf, int count, double u, double *inside) {
+    /* Without a branch that depends on u: it would be mispredicted every other time. */
+    int cell = 0;
+    for (int half; (half = count / 2) > 0; count -= half)
+        cell = cdf[cell + half] <= u ? cell + half : cell;
+    *inside = (u - cdf[cell]) / (cdf[cell + 1] - cdf[cell]);
+    return cell;
 }
 
 static inline double sample_wavelength(const Scene *scene, const Emitter *emitter, double u) {
-    /* Without a branch that depends on u: it would be mispredicted every other time. */
-    const Segment *low = scene->segments + emitter->first_segment;
-    for (int left = emitter->segment_count, half; (half = left / 2) > 0; left -= half)
-        low = low[half].cdf_low <= u ? low + half : low;
-    if (low->width_nm == 0.0) return low->wavelength_nm;
-    double v = smaller(larger((u - low->cdf_low) / (low->cdf_high - low->cdf_low), 0.0), 1.0);
-    double d0 = low->density_low, d1 = low->density_high;
+    double v;
+    int cell = locate(emitter->cdf, emitter->segment_count, u, &v);
+    const Segment *segment = scene->segments + emitter->first_segment + cell;
+    if (segment->width_nm == 0.0) return segment->wavelength_nm;
+    v = smaller(larger(v, 0.0), 1.0);
+    double d0 = segment->density_low, d1 = segment->density_high;
     double root = sqrt(larger(d0 * d0 + v * (d1 - d0) * (d1 + d0), 0.0));
-    return low->wavelength_nm + low->width_nm * v * (d0 + d1) / (d0 + root);
+    return segment->wavelength_nm + segment->width_nm * v * (d0 + d1) / (d0 + root);
 }
 
 static inline double cone_of(const Target *target, Vec to_target) {
@@ -177,10 +187,10 @@ static inline double cone_of(const Target *target, Vec to_target) {
 
 /* Cell, and coordinate in [0, 1) of the side, where a rectangle's distribution reaches u. */
 static inline int invert_cells(const double *cdf, double u, double *s) {
-    int low = 0;
-    for (int half = AIM_CELLS / 2; half > 0; half /= 2) low = cdf[low + half] <= u ? low + half : low;
-    *s = (low + (u - cdf[low]) / (cdf[low + 1] - cdf[low])) * (1.0 / AIM_CELLS);
-    return low;
+    double inside;
+    int cell = locate(cdf, AIM_CELLS, u, &inside);
+    *s = (cell + inside) * (1.0 / AIM_CELLS);
+    return cell;
 }
 
 static inline int cell_of(double s) {
@@ -211,8 +221,8 @@ static inline double area_density(
                             0.5 + 0.5 * y / target->half_v);
     if (emitter->kind == SPHERE_LAMP) {
         Vec outward = sub(origin, emitter->centre);
-        Vec way = normalize(along(outward, direction, t));
-        density *= larger(dot(outward, way), 0.0) / dot(outward, direction);
+        Vec way = along(outward, direction, t);
+        density *= larger(dot(outward, way), 0.0) / (dot(outward, direction) * sqrt(dot(way, way)));
     }
     return density;
 }
@@ -481,9 +491,9 @@ static inline double roulette(const Stream *stream, int purpose, uint64_t draws,
     return (double)(uint32_t)(bits >> 40) * 0x1p-24;
 }
 
-/* A photon of one wavelength and all its branches. */
-static void follow(const Scene *scene, const Stream *stream, Ray ray, double wavelength_nm, double flux,
-                   uint64_t draws, Photons *photons, Books *books) {
+/* A photon of one wavelength, about to meet `hit`, and all its branches. */
+static void follow(const Scene *scene, const Stream *stream, Ray ray, Hit hit, double wavelength_nm,
+                   double flux, uint64_t draws, Photons *photons, Books *books) {
     struct { Ray ray; double flux; int32_t history; } stack[STACK_SIZE];
     double indices[MAX_MEDIA];
     media_indices(scene, wavelength_nm, indices);
@@ -491,9 +501,9 @@ static void follow(const Scene *scene, const Stream *stream, Ray ray, double wav
     int32_t history = 0;
     int depth = 0;
     for (int step = 0; step < scene->max_interactions; step++) {
-        Hit hit = {0};
         int material = ABSORBER;
-        if (!intersect(scene, &ray, &hit)) {
+        if (step > 0) intersect(scene, &ray, &hit);
+        if (hit.prim < 0) {
             books->escaped += flux;
         } else {
             const Body *body = scene->bodies + hit.prim;
@@ -577,7 +587,7 @@ static void trace_photon(const Scene *scene, const Stream *stream, uint32_t i, P
     for (int colour = 0; colour < colours; colour++) {
         double v = u + (double)colour / colours;
         double wavelength_nm = sample_wavelength(scene, scene->emitters + stream->emitter, v - floor(v));
-        follow(scene, stream, ray, wavelength_nm, flux,
+        follow(scene, stream, ray, first, wavelength_nm, flux,
                ((uint64_t)i << 24) + ((uint64_t)colour << 17), photons, books);
     }
 }
@@ -636,20 +646,21 @@ static void read_scene(const char *path, Scene *scene) {
          a->dispersive = take_int(&p););
     READ(media, media_count, 9,
          a->formula = take_int(&p); for (int k = 0; k < 8; k++) a->c[k] = take(&p););
-    READ(emitters, emitter_count, 23,
+    READ(cdf, cdf_count, 1, *a = take(&p););
+    READ(emitters, emitter_count, 24,
          a->kind = take_int(&p); a->round = take_int(&p); a->centre = take_vec(&p);
          a->u = take_vec(&p); a->v = take_vec(&p); a->axis = take_vec(&p);
          a->half_u = take(&p); a->half_v = take(&p); a->radius = take(&p); a->sin2_half = take(&p);
          a->flux = take(&p); a->first_target = take_int(&p); a->target_count = take_int(&p);
-         a->first_segment = take_int(&p); a->segment_count = take_int(&p););
-    READ(cdf, cdf_count, 1, *a = take(&p););
+         a->first_segment = take_int(&p); a->segment_count = take_int(&p);
+         a->cdf = scene->cdf + take_int(&p););
     READ(targets, target_count, 18,
          a->kind = take_int(&p); a->centre = take_vec(&p); a->u = take_vec(&p); a->v = take_vec(&p);
          a->normal = take_vec(&p); a->half_u = take(&p); a->half_v = take(&p); a->radius = take(&p);
          a->cdf = scene->cdf + take_int(&p); a->photons = take(&p););
-    READ(segments, segment_count, 6,
+    READ(segments, segment_count, 4,
          a->wavelength_nm = take(&p); a->width_nm = take(&p); a->density_low = take(&p);
-         a->density_high = take(&p); a->cdf_low = take(&p); a->cdf_high = take(&p););
+         a->density_high = take(&p););
     READ(streams, stream_count, 5 + DIMENSIONS,
          a->emitter = take_int(&p); a->target = take_int(&p); a->photons = (uint32_t)take(&p);
          a->key = (uint64_t)take(&p) << 32; a->key |= (uint64_t)take(&p);

@@ -36,6 +36,7 @@ from sim.image.camera import compile_camera  # noqa: E402
 from sim.image.survey import survey_view  # noqa: E402
 from sim.photons import tracing  # noqa: E402
 from sim.photons.lamps import Lamps, compile_lamps  # noqa: E402
+from sim.photons.photon_path import COLOURS  # noqa: E402
 from sim.sampling.counter import fold_key  # noqa: E402
 from sim.sampling.sobol import DIMENSIONS, sobol_tables  # noqa: E402
 from sim.scene_data import CompiledScene, compile_scene  # noqa: E402
@@ -78,19 +79,19 @@ def sections(compiled: CompiledScene, lamps: Lamps) -> list[FloatArray]:
             "material", "medium_outside", "medium_inside", "dispersive",
         ),
         np.hstack([columns(data.media.numpy(), media, "formula"), data.coefficients.numpy()]),
+        shine.cdf.numpy().reshape(-1, 1),
         columns(
             emitters, len(emitters), "kind", "round", "centre", "frame", "half_u", "half_v",
             "radius", "sin2_half", "flux", "first_target", "target_count", "first_segment",
-            "segment_count",
+            "segment_count", "first_cdf",
         ),
-        shine.cdf.numpy().reshape(-1, 1),
         columns(
             targets, len(targets), "kind", "centre", "frame", "half_u", "half_v", "radius",
             "first_cdf", "photons",
         ),
         columns(
             shine.segments.numpy(), len(shine.segments), "wavelength_nm", "width_nm",
-            "density_low", "density_high", "cdf_low", "cdf_high",
+            "density_low", "density_high",
         ),
         stream_rows(lamps),
         sobol_tables().astype(np.float64).reshape(1, -1),
@@ -100,7 +101,7 @@ def sections(compiled: CompiledScene, lamps: Lamps) -> list[FloatArray]:
                     MAX_INTERACTIONS,
                     tracing.BRANCH_THRESHOLD,
                     tracing._SLOTS_PER_PHOTON,
-                    int(tracing.COLOURS),
+                    int(COLOURS),
                 ]
             ]
         ),

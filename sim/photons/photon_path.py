@@ -1,0 +1,233 @@
+"""Photon paths: from a lamp through glass to the diffuse surfaces, where photons are stored.
+
+At a boundary the stronger of the two branches is followed with its weight and the other is put
+on a stack while its flux matters; below a threshold either plays Russian roulette for the
+threshold's flux. Nothing is averaged away, and the books keep what roulette adds or takes.
+
+References:
+    Jensen (1996), "Global illumination using photon maps", §2.1: photon tracing.
+"""
+
+import functools
+from typing import Any
+
+import warp as wp
+
+from sim.features import Features
+from sim.photons.emission import make_emission, make_wavelength_function
+from sim.photons.energy import BOOK_COLUMNS
+from sim.photons.lamp_structs import make_lamp_structs
+from sim.photons.photon_structs import (
+    add_event,
+    make_photon_structs,
+    mark_dispersed,
+    surface_key,
+)
+from sim.sampling.roulette import play_roulette
+from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+
+__all__ = ["COLOURS", "make_trace_photons"]
+
+STACK_SIZE = wp.constant(8)
+
+COLOURS = wp.constant(4)
+"""Wavelengths, evenly spread over the lamp's distribution, of a photon that meets a dispersive
+surface first: light that leaves the glass nearly where it would without dispersion stays white
+from few photons."""
+
+
+@functools.cache
+def make_trace_photons(precision: str, features: Features) -> Any:
+    """Kernel `trace_photons(start, scene, lamps, job, photons, counts, books)`."""
+    transport = make_transport(precision, features)
+    real, vec3, scatter = transport.real, transport.vec3, transport.scatter
+    media_indices, split = transport.media_indices, transport.split
+    scene_type, ray_type, hit_type = transport.Scene, transport.Ray, transport.Hit
+    lamps_type = make_lamp_structs(precision).Lamps
+    photon_structs = make_photon_structs(precision)
+    photons_type, job_type = photon_structs.Photons, photon_structs.Job
+    emit = make_emission(precision)
+    sample_wavelength = make_wavelength_function(precision)
+    intersect = transport.intersect
+    flows_type = wp.types.vector(length=len(BOOK_COLUMNS) - 1, dtype=wp.float64)
+
+    @wp.func
+    def store(
+        photons: photons_type, slot: int, point: vec3, direction: vec3, wavelength_nm: real,
+        flux: real, surface: int, history: int, emitter: int,
+    ):
+        photons.position[slot] = point
+        photons.direction[slot] = wp.vec3(
+            wp.float32(direction[0]), wp.float32(direction[1]), wp.float32(direction[2])
+        )
+        photons.wavelength_nm[slot] = wp.float32(wavelength_nm)
+        photons.flux[slot] = wp.float64(flux)
+        photons.surface[slot] = surface
+        photons.history[slot] = history
+        photons.emitter[slot] = emitter
+
+    @wp.func
+    def follow(
+        scene: scene_type, job: job_type, start_ray: ray_type, first: hit_type,
+        wavelength_nm: real, start_flux: real, draws: wp.uint64, out_photons: photons_type,
+        out_counts: wp.array2d(dtype=int),
+    ):
+        """Follow a photon of one wavelength, about to meet `first`, and all its branches.
+
+        Returns flux deposited, absorbed, escaped and culled.
+        """
+        indices = media_indices(scene, wavelength_nm)
+        deposited = real(0.0)
+        absorbed = real(0.0)
+        escaped = real(0.0)
+        culled = real(0.0)
+        ray = start_ray
+        flux = start_flux
+        threshold = flux * job.branch_threshold
+        history = int(0)
+
+        stack_ray = wp.zeros(shape=(8,), dtype=ray_type)
+        stack_flux = wp.zeros(shape=(8,), dtype=real)
+        stack_history = wp.zeros(shape=(8,), dtype=int)
+        depth = int(0)
+        alive = bool(True)
+        hit = first
+        step = int(0)
+        while step < job.max_interactions:
+            met = scatter(scene, ray, hit, indices)
+            if met.event == EVENT_BOUNDARY:
+                history = mark_dispersed(history, met.dispersive)
+                stronger, weaker, refracts = split(met)
+                side_flux = flux * met.reflectance
+                if refracts == 0:
+                    side_flux = flux - side_flux
+                flux -= side_flux
+                side_history = add_event(history, 1 - refracts)
+                history = add_event(history, refracts)
+                ray.origin = met.point
+                ray.direction = stronger
+                ray.prim = met.prim
+                ray.face = met.face
+                draw = draws + wp.uint64(step)
+                if depth == STACK_SIZE:
+                    # No room for a side branch: chance chooses one of both for the light of both.
+                    both = flux + side_flux
+                    if play_roulette(side_flux, both, job.key + wp.uint64(1), draw) > real(0.0):
+                        ray.direction = weaker
+                        history = side_history
+                    flux = both
+                else:
+                    kept = play_roulette(side_flux, threshold, job.key + wp.uint64(1), draw)
+                    culled += side_flux - kept
+                    if kept > real(0.0):
+                        side_ray = ray_type()
+                        side_ray.origin = met.point
+                        side_ray.direction = weaker
+                        side_ray.prim = met.prim
+                        side_ray.face = met.face
+                        stack_ray[depth] = side_ray
+                        stack_flux[depth] = kept
+                        stack_history[depth] = side_history
+                        depth += 1
+                # The stronger branch plays as well: a path reflected again and again, and ever
+                # fainter, would use up the interactions that the branches behind it need.
+                kept = play_roulette(flux, threshold, job.key + wp.uint64(2), draw)
+                culled += flux - kept
+                flux = kept
+                alive = flux > real(0.0)
+            else:
+                alive = False
+                if met.event == EVENT_DEPOSIT:
+                    deposited += flux
+                    slot = wp.atomic_add(out_counts, job.range_row, 0, 1)
+                    if slot < job.slot_count:
+                        store(
+                            out_photons, job.first_slot + slot, met.point, ray.direction,
+                            wavelength_nm, flux, surface_key(met.prim, met.face, met.side),
+                            history, job.emitter,
+                        )
+                elif met.event == EVENT_ABSORB:
+                    absorbed += flux
+                else:
+                    escaped += flux
+            if not alive:
+                if depth == 0:
+                    break
+                depth -= 1
+                # Field by field: see `scatter`.
+                pending = stack_ray[depth]
+                ray.origin = pending.origin
+                ray.direction = pending.direction
+                ray.prim = pending.prim
+                ray.face = pending.face
+                flux = stack_flux[depth]
+                history = stack_history[depth]
+                alive = True
+            hit = intersect(scene, ray)
+            step += 1
+
+        if alive:
+            culled += flux
+        for k in range(depth):
+            culled += stack_flux[k]
+        return flows_type(
+            wp.float64(deposited), wp.float64(absorbed), wp.float64(escaped), wp.float64(culled)
+        )
+
+    @wp.func
+    def trace_photon(
+        scene: scene_type, lamps: lamps_type, job: job_type, index: wp.uint32,
+        out_photons: photons_type, out_counts: wp.array2d(dtype=int),
+    ):
+        """Emit photon `index` and follow it; see where its flux goes, as in BOOK_COLUMNS."""
+        ray, u_wavelength, emitted = emit(
+            lamps, job.emitter, job.target, job.seed_row, index, job.key
+        )
+        flows = flows_type()
+        if emitted > real(0.0):
+            # What meets a dispersive surface first is followed in several colours at once.
+            colours = int(1)
+            first = intersect(scene, ray)
+            if first.prim >= 0:
+                if scene.bodies[first.prim].dispersive == 1:
+                    colours = int(COLOURS)
+            flux = emitted / real(colours)
+            colour = int(0)
+            while colour < colours:
+                u = u_wavelength + real(colour) / real(colours)
+                wavelength_nm = sample_wavelength(
+                    lamps, lamps.emitters[job.emitter], u - wp.floor(u)
+                )
+                draws = (wp.uint64(index) << wp.uint64(24)) + (wp.uint64(colour) << wp.uint64(17))
+                flows += follow(
+                    scene, job, ray, first, wavelength_nm, flux, draws, out_photons, out_counts
+                )
+                colour += 1
+        return emitted, flows
+
+    @wp.kernel(module="unique", enable_backward=False)
+    def trace_photons(
+        start: int,
+        scene: scene_type,
+        lamps: lamps_type,
+        job: job_type,
+        out_photons: photons_type,
+        out_counts: wp.array2d(dtype=int),
+        out_books: wp.array2d(dtype=wp.float64),
+    ):
+        total = wp.float64(0.0)
+        flows = flows_type()
+        index = start + wp.tid() * job.run
+        stop = wp.min(index + job.run, job.stop)
+        while index < stop:
+            emitted, went = trace_photon(
+                scene, lamps, job, wp.uint32(index), out_photons, out_counts
+            )
+            total += wp.float64(emitted)
+            flows += went
+            index += 1
+        wp.atomic_add(out_books, job.range_row, 0, total)
+        for column in range(4):
+            wp.atomic_add(out_books, job.range_row, column + 1, flows[column])
+
+    return trace_photons
