@@ -28,6 +28,7 @@ from sim.errors import SettingsError
 from sim.image.camera import compile_camera
 from sim.image.film import Film, create_film, expose
 from sim.image.picture import Picture
+from sim.image.sight import compose_lights
 from sim.image.survey import Survey, survey_view
 from sim.photons.energy import EnergyBooks
 from sim.photons.lamps import Lamps, compile_lamps
@@ -124,7 +125,10 @@ def render(
         assert scene.camera is not None  # require_renderable has seen to it
         camera = compile_camera(compiled, scene.camera, scene.film)
         survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
-        lamps = compile_lamps(compiled, edges_nm, plan.photons, view=survey)
+        lamps = compile_lamps(
+            compiled, edges_nm, plan.photons, view=survey,
+            direct=plan.direct_light == "photons",
+        )
         receivers = compile_receivers(compiled, lamps, edges_nm)
         film = create_film(
             scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device,
@@ -209,6 +213,7 @@ class _Studio:
                 pass_index=pass_index,
                 max_interactions=self.plan.max_interactions,
                 threads=self.plan.threads,
+                store_direct=self.plan.direct_light == "photons",
                 stop=stop,
                 on_done=self.watch.count_photons,
             )
@@ -226,12 +231,18 @@ class _Studio:
     def expose(self, film: Film, photon_map: PhotonMap, pass_index: int) -> None:
         """Expose the film to one pass."""
         self.watch.pass_index = pass_index
+        lights = compose_lights(
+            self.plan.precision,
+            photon_map,
+            self.receivers,
+            self.lamps,
+            direct=self.plan.direct_light == "lamps",
+        )
         expose(
             film,
             self.compiled,
             self.camera,
-            photon_map,
-            self.receivers,
+            lights,
             seed=self.plan.seed,
             pass_index=pass_index,
             threads=self.plan.threads,

@@ -19,9 +19,10 @@ from sim.errors import SettingsError
 if TYPE_CHECKING:
     from scenes import Scene
 
-__all__ = ["DEFAULTS", "Precision", "RenderSettings", "ResolvedSettings"]
+__all__ = ["DEFAULTS", "DirectLight", "Precision", "RenderSettings", "ResolvedSettings"]
 
 Precision: TypeAlias = Literal["float32", "float64"]
+DirectLight: TypeAlias = Literal["lamps", "photons"]
 
 DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256}
 
@@ -35,6 +36,7 @@ _WHOLE_NUMBERS: Final = {
     "threads": (1, 1024),
 }
 _PRECISIONS: Final = ("float32", "float64")
+_DIRECT_LIGHTS: Final = ("lamps", "photons")
 _DEVICE: Final = re.compile(r"cpu|cuda:\d+")
 
 
@@ -48,6 +50,8 @@ class RenderSettings:
         radius: Gather radius of the first pass [m]; None: from the pixel's footprint.
         alpha: How slowly the gather radius shrinks, r²ᵢ₊₁ = r²ᵢ (i + α)/(i + 1) (Knaus and
             Zwicker 2011); 1 keeps it.
+        direct_light: What shows light that comes straight from a lamp: "lamps", by shadow rays,
+            or "photons", from the photon map like all other light.
         max_interactions: Surfaces that one path may meet before it is culled.
         seed: Key of every random sequence; equal seeds give equal pictures.
         threads: CPU threads; None: all cores. It does not change the picture.
@@ -62,6 +66,7 @@ class RenderSettings:
     passes: int | None = None
     radius: float | None = None
     alpha: float = 2 / 3
+    direct_light: DirectLight = "lamps"
     max_interactions: int | None = None
     seed: int = 0
     threads: int | None = None
@@ -80,6 +85,8 @@ class RenderSettings:
             raise SettingsError("device", self.device, "'cpu', 'cuda:0', 'cuda:1', …")
         if self.precision is not None and self.precision not in _PRECISIONS:
             raise SettingsError("precision", self.precision, "'float32' or 'float64'")
+        if self.direct_light not in _DIRECT_LIGHTS:
+            raise SettingsError("direct_light", self.direct_light, "'lamps' or 'photons'")
 
     def _replace(self, field: str, value: object) -> None:
         """Store a validated value as a plain Python number, although the class is frozen."""

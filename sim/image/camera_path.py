@@ -15,7 +15,6 @@ References:
     Jensen (1996), "Global illumination using photon maps", §4.
     Veach (1997), *Robust Monte Carlo Methods for Light Transport Simulation*, §5.2: radiance
     across a boundary.
-    Roberts (2018), "The unreasonable effectiveness of quasirandom sequences": the R2 sequence.
     Welford (1962), Technometrics 4, 419: running mean and sum of squared deviations.
 """
 
@@ -27,9 +26,9 @@ import warp as wp
 from sim.features import Features
 from sim.image.camera import make_camera_functions, make_camera_struct
 from sim.image.gather import make_gather
-from sim.photons.photon_map import make_map_structs
-from sim.photons.receivers import make_receiver_structs
-from sim.sampling.counter import hash64, to_unit
+from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
+from sim.sampling.counter import hash64
+from sim.sampling.kronecker import r1_point, r2_point
 from sim.sampling.roulette import play_roulette
 from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
 
@@ -42,6 +41,9 @@ BRANCH_THRESHOLD = wp.constant(0.1)
 """A side branch of less throughput plays Russian roulette for this much."""
 
 STACK_SIZE = wp.constant(8)
+
+SHADOW_RAYS = wp.constant(4)
+"""To each lamp, of a path for all bands; the many paths for single bands cast one each."""
 
 
 @functools.cache
@@ -68,13 +70,12 @@ def make_film_struct() -> Any:
 
 @functools.cache
 def make_render_camera(precision: str, features: Features) -> Any:
-    """Kernel `render_camera(start, scene, camera, photons, receivers, film)`."""
+    """Kernel `render_camera(start, scene, camera, lights, film)`."""
     transport = make_transport(precision, features)
     real, interact = transport.real, transport.interact
     media_indices, split = transport.media_indices, transport.split
     scene_type, ray_type = transport.Scene, transport.Ray
-    map_type = make_map_structs(precision).Map
-    receivers_type = make_receiver_structs(precision).Receivers
+    lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
     look = make_camera_functions(precision)
     gather = make_gather(precision, features)
@@ -82,30 +83,25 @@ def make_render_camera(precision: str, features: Features) -> Any:
     @wp.func
     def follow(
         scene: scene_type,
-        photons: map_type,
-        receivers: receivers_type,
+        lights: lights_type,
         camera_ray: ray_type,
-        band: int,
-        deal: int,
-        weight: real,
-        wavelength_nm: real,
-        key: wp.uint64,
+        sight: sight_type,
         sample: wp.array2d(dtype=wp.float64),
-        row: int,
     ):
-        """Add one path's radiance to `sample[row]`; 1 if a branch met a dispersive surface."""
-        indices = media_indices(scene, wavelength_nm)
+        """Add one path's radiance to the sample; 1 if a branch met a dispersive surface."""
+        indices = media_indices(scene, sight.wavelength_nm)
         stack_ray = wp.zeros(shape=(8,), dtype=ray_type)
         stack_throughput = wp.zeros(shape=(8,), dtype=real)
         stack_dispersed = wp.zeros(shape=(8,), dtype=int)
         depth = int(0)
         alive = bool(True)
         ray = camera_ray
-        throughput = weight
-        threshold = weight * real(BRANCH_THRESHOLD)
+        throughput = sight.weight
+        threshold = sight.weight * real(BRANCH_THRESHOLD)
         dispersed = int(0)
         met_dispersive = int(0)
-        for step in range(MAX_INTERACTIONS):
+        step = int(0)
+        while step < MAX_INTERACTIONS:
             if not alive:
                 if depth == 0:
                     break
@@ -124,7 +120,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 if met.dispersive == 1:
                     met_dispersive = 1
                     dispersed = 1
-                if met.dispersive == 1 and band < 0:
+                if met.dispersive == 1 and sight.band == ALL_BANDS:
                     alive = False
                 else:
                     stronger, weaker, refracts = split(met)
@@ -139,7 +135,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
                     ray.prim = met.prim
                     ray.face = met.face
                     throughput = main
-                    side = play_roulette(side, threshold, key, wp.uint64(step))
+                    side = play_roulette(side, threshold, sight.key, wp.uint64(step))
                     if side > real(0.0) and depth < STACK_SIZE:
                         side_ray = ray_type()
                         side_ray.origin = met.point
@@ -152,73 +148,73 @@ def make_render_camera(precision: str, features: Features) -> Any:
                         depth += 1
             else:
                 alive = False
-                if met.event == EVENT_DEPOSIT and (band < 0 or dispersed == 1):
-                    gather(
-                        scene, photons, receivers, met, band, deal,
-                        throughput / receivers.band_width_nm, sample, row,
-                    )
+                if met.event == EVENT_DEPOSIT and (sight.band == ALL_BANDS or dispersed == 1):
+                    scale = throughput / lights.receivers.band_width_nm
+                    gather(scene, lights, met, sight, scale, sample)
+            step += 1
         return met_dispersive
 
-    @wp.kernel(module="unique", enable_backward=False)
-    def render_camera(
-        start: int,
-        scene: scene_type,
-        camera: camera_type,
-        photons: map_type,
-        receivers: receivers_type,
-        film: film_type,
+    @wp.func
+    def sample_pixel(
+        scene: scene_type, camera: camera_type, lights: lights_type, film: film_type, pixel: int
     ):
-        pixel = start + wp.tid()
-        if film.turn == 0:
-            for column in range(receivers.bands + receivers.lamps):
-                film.sample[pixel, column] = wp.float64(0.0)
-        # R2 points over the passes, shifted at random for each pixel: every pixel's samples
-        # are spread, and neighbours share no pattern.
-        step = real(film.pass_index)
-        shift = wp.uint64(pixel)
-        x = to_unit(hash64(film.key, shift * wp.uint64(3)), step)
-        y = to_unit(hash64(film.key, shift * wp.uint64(3) + wp.uint64(1)), step)
-        z = to_unit(hash64(film.key, shift * wp.uint64(3) + wp.uint64(2)), step)
-        x += step * real(0.7548776662466927)
-        y += step * real(0.5698402909980532)
-        z += step * real(0.6180339887498949)
+        """Add one sample of a pixel to its row: a path for all bands, and paths for its turn's."""
+        receivers = lights.receivers
+        pass_number = wp.uint32(film.pass_index)
+        pixel_key = hash64(film.key, wp.uint64(pixel))
+        x, y = r2_point(pixel_key, pass_number, receivers.band_width_nm)
+        inside_band = r1_point(pixel_key + wp.uint64(1), pass_number, receivers.band_width_nm)
         ray = ray_type()
         ray.origin = camera.position
         ray.direction = look(
-            camera,
-            real(pixel % camera.width) + x - wp.floor(x),
-            real(pixel // camera.width) + y - wp.floor(y),
+            camera, real(pixel % camera.width) + x, real(pixel // camera.width) + y
         )
         ray.prim = -1
         ray.face = -1
-        inside_band = z - wp.floor(z)
-        key = hash64(
-            film.key + wp.uint64(1), shift * wp.uint64(1048576) + wp.uint64(film.pass_index)
-        )
+        sight = sight_type()
+        sight.row = pixel
+        sight.band = ALL_BANDS
+        sight.weight = real(1.0) / real(film.turns)
         half_range_nm = real(0.5) * receivers.band_width_nm * real(receivers.bands)
-        wavelength_nm = receivers.first_edge_nm + half_range_nm
-        dispersed = follow(
-            scene, photons, receivers, ray, -1, 0, real(1.0) / real(film.turns), wavelength_nm,
-            key, film.sample, pixel,
-        )
-        if dispersed == 1:
-            deal = int(key >> wp.uint64(40))
+        sight.wavelength_nm = receivers.first_edge_nm + half_range_nm
+        sight.key = hash64(pixel_key + wp.uint64(2), wp.uint64(film.pass_index))
+        sight.lamp_key = pixel_key + wp.uint64(3)
+        sight.sample = film.pass_index
+        sight.shadow_rays = SHADOW_RAYS
+        if follow(scene, lights, ray, sight, film.sample) == 1:
+            sight.deal = int(sight.key >> wp.uint64(40))
+            sight.weight = real(1.0)
+            sight.shadow_rays = 1
             # Neighbours to the right and below have turns of their own: no stripes.
             place = pixel % camera.width + pixel // camera.width * (film.turns // 2)
-            for band in range((place + film.turn) % film.turns, receivers.bands, film.turns):
-                wavelength_nm = receivers.first_edge_nm
-                wavelength_nm += receivers.band_width_nm * (real(band) + inside_band)
-                follow(
-                    scene, photons, receivers, ray, band, deal, real(1.0), wavelength_nm, key,
-                    film.sample, pixel,
-                )
+            sight.band = (place + film.turn) % film.turns
+            while sight.band < receivers.bands:
+                offset_nm = receivers.band_width_nm * (real(sight.band) + inside_band)
+                sight.wavelength_nm = receivers.first_edge_nm + offset_nm
+                follow(scene, lights, ray, sight, film.sample)
+                sight.band += film.turns
+
+    @wp.kernel(module="unique", enable_backward=False)
+    def render_camera(
+        start: int, scene: scene_type, camera: camera_type, lights: lights_type, film: film_type
+    ):
+        pixel = start + wp.tid()
+        bands = lights.receivers.bands
+        if film.turn == 0:
+            column = int(0)
+            while column < bands + lights.receivers.lamps:
+                film.sample[pixel, column] = wp.float64(0.0)
+                column += 1
+        sample_pixel(scene, camera, lights, film, pixel)
         if film.turn == film.turns - 1:
             share = wp.float64(1.0) / wp.float64(film.rounds_before + 1)
-            for band in range(receivers.bands):
+            band = int(0)
+            while band < bands:
                 value = film.sample[pixel, band]
                 delta = value - film.mean[pixel, band]
                 mean = film.mean[pixel, band] + delta * share
                 film.mean[pixel, band] = mean
                 film.squares[pixel, band] += delta * (value - mean)
+                band += 1
 
     return render_camera

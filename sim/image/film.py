@@ -10,7 +10,6 @@ import warp as wp
 
 from sim.image.camera_path import make_film_struct, make_render_camera
 from sim.launch import cut_ranges, launch_ranges
-from sim.photons.photon_map import PhotonMap
 from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 
@@ -104,22 +103,20 @@ def expose(
     film: Film,
     compiled: CompiledScene,
     camera: Any,
-    photon_map: PhotonMap,
-    receivers: Any,
+    lights: Any,
     *,
     seed: int,
     pass_index: int,
     threads: int,
     on_done: Callable[[int], None] | None = None,
 ) -> None:
-    """Expose `film` to one pass: a camera path a pixel, gathering from `photon_map`.
+    """Expose `film` to one pass: a camera path a pixel, gathering from `lights`.
 
     Args:
         film: what the pass is averaged into.
         compiled: the scene.
         camera: the device-side Camera struct.
-        photon_map: this pass's photons.
-        receivers: the device-side Receivers struct.
+        lights: the device-side Lights struct, with this pass's photons.
         seed: the run's seed.
         pass_index: decides the position within the pixels and the bands.
         threads: CPU threads.
@@ -130,7 +127,7 @@ def expose(
     data.rounds_before, data.turn = divmod(film.passes, film.turns)
     data.turns = film.turns
     data.key = fold_key(seed, _CAMERA_KEY)
-    inputs = [compiled.data, camera, photon_map.data, receivers, data]
+    inputs = [compiled.data, camera, lights, data]
     launch_ranges(
         make_render_camera(compiled.precision, compiled.features),
         cut_ranges(film.height * film.width, _RANGE_SIZE),

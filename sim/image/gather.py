@@ -1,10 +1,11 @@
-"""Radiance from the photon map at a point of a diffuse receiver.
+"""Radiance that a point of a diffuse receiver sends back: from the photon map, and direct.
 
 The reflected radiance of a band is ``L = Σ K(|x − xₚ|) ρ Φₚ / (π Δλ)`` over the band's photons on
 the same side of the same face within the radius, and of photons that no dispersion has touched
 each band takes its share, with the kernel of Epanechnikov (1969),
 ``K(d) = 2/(π r²) (1 − d²/r²)``. Where the disc overhangs the receiver's edge, K is divided by its
-integral over the part that does not.
+integral over the part that does not. Where the map leaves out what comes straight from the lamps,
+their irradiance E adds ``ρ E / (π Δλ)``.
 
 References:
     Jensen (1996), "Global illumination using photon maps", §3.2.
@@ -19,6 +20,8 @@ import warp as wp
 from sim.features import Features
 from sim.geometry.extent import distance_to_circle, distance_to_planes, distance_to_sides
 from sim.geometry.flat import plane_coordinates
+from sim.image.direct_light import make_direct_light
+from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
 from sim.photons.photon_map import make_map_structs
 from sim.photons.photon_structs import surface_key
 from sim.photons.receivers import DEALS, make_receiver_structs
@@ -104,10 +107,10 @@ def make_kernel_integral(precision: str, features: Features) -> object:
 
 @functools.cache
 def make_gather(precision: str, features: Features) -> object:
-    """Device function `gather(scene, photons, receivers, met, band, deal, scale, sums, row)`.
+    """Device function `gather(scene, lights, met, sight, scale, sums)`.
 
-    It adds `scale` times the reflected radiance, times the bands' width, to the bands of
-    `sums[row]`: to all of them where `band` is −1, else to that one, and of undispersed photons
+    It adds `scale` times the reflected radiance, times the bands' width, to the bands of the
+    sight's row of `sums`: to all of them, or to the sight's own, and then of undispersed photons
     from one of their deals. The columns behind the bands, one a lamp, are
     scratch, zero before and after.
     """
@@ -116,14 +119,16 @@ def make_gather(precision: str, features: Features) -> object:
     scene_type, interaction_type = structs.Scene, structs.Interaction
     map_type = make_map_structs(precision).Map
     receivers_type = make_receiver_structs(precision).Receivers
+    lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     kernel_integral = make_kernel_integral(precision, features)
+    direct_irradiance = make_direct_light(precision, features)
 
     @wp.func
     def sum_group(
-        photons: map_type, receivers: receivers_type, met: interaction_type, surface: int,
-        group: int, band: int,
+        photons: map_type, receivers: receivers_type, met: interaction_type, group: int, band: int
     ):
         """Σ (1 − d²/r²) w of one group's photons, as far as they shine in `band`."""
+        surface = surface_key(met.prim, met.face, met.side)
         inv_radius2 = real(1.0) / (photons.radius * photons.radius)
         query = wp.hash_grid_query(photons.grid, met.point, photons.radius, group)
         candidate = int(0)
@@ -140,10 +145,11 @@ def make_gather(precision: str, features: Features) -> object:
 
     @wp.func
     def add_groups(
-        photons: map_type, receivers: receivers_type, met: interaction_type, surface: int,
-        peak: real, sums: wp.array2d(dtype=wp.float64), row: int,
+        photons: map_type, bands: int, met: interaction_type, peak: real,
+        sums: wp.array2d(dtype=wp.float64), row: int,
     ):
         """Add `peak` (1 − d²/r²) w of every photon to its band's column, or to its lamp's."""
+        surface = surface_key(met.prim, met.face, met.side)
         inv_radius2 = real(1.0) / (photons.radius * photons.radius)
         query = wp.hash_grid_query(photons.grid, met.point, photons.radius)
         candidate = int(0)
@@ -153,33 +159,51 @@ def make_gather(precision: str, features: Features) -> object:
             if x < real(1.0) and photons.surface[candidate] == surface:
                 value = peak * (real(1.0) - x) * photons.weight[candidate]
                 column = photons.group[candidate]
-                if column >= receivers.bands:
-                    column = receivers.bands + photons.lamp[candidate]
+                if column >= bands:
+                    column = bands + photons.lamp[candidate]
                 sums[row, column] += wp.float64(value)
 
     @wp.func
     def gather(
-        scene: scene_type, photons: map_type, receivers: receivers_type, met: interaction_type,
-        band: int, deal: int, scale: real, sums: wp.array2d(dtype=wp.float64), row: int,
+        scene: scene_type, lights: lights_type, met: interaction_type, sight: sight_type,
+        scale: real, sums: wp.array2d(dtype=wp.float64),
     ):
+        photons = lights.photons
+        receivers = lights.receivers
         bands = receivers.bands
-        surface = surface_key(met.prim, met.face, met.side)
+        row = sight.row
         inside = kernel_integral(scene, met, photons.radius)
-        peak = scale * real(2.0) / (real(PI) * photons.radius * photons.radius * inside)
-        if band < 0:
-            add_groups(photons, receivers, met, surface, peak, sums, row)
-            for lamp in range(receivers.lamps):
+        density = real(2.0) / (real(PI) * photons.radius * photons.radius * inside)
+        if sight.band == ALL_BANDS:
+            add_groups(photons, bands, met, scale * density, sums, row)
+            lamp = int(0)
+            while lamp < receivers.lamps:
                 total = sums[row, bands + lamp]
                 sums[row, bands + lamp] = wp.float64(0.0)
+                if lights.direct == 1:
+                    total += wp.float64(
+                        scale * direct_irradiance(scene, lights.lamps, lamp, met, sight)
+                    )
                 if total > wp.float64(0.0):
-                    for b in range(bands):
-                        share = wp.float64(receivers.spread[lamp, met.prim, b])
-                        sums[row, b] += total * share
+                    band = int(0)
+                    while band < bands:
+                        share = wp.float64(receivers.spread[lamp, met.prim, band])
+                        sums[row, band] += total * share
+                        band += 1
+                lamp += 1
         else:
-            dealt = bands + (band + deal) % DEALS
-            dispersed = sum_group(photons, receivers, met, surface, band, band)
-            undispersed = sum_group(photons, receivers, met, surface, dealt, band)
-            both = dispersed + undispersed * real(wp.static(float(DEALS)))
-            sums[row, band] += wp.float64(peak * both)
+            total_band = sum_group(photons, receivers, met, sight.band, sight.band)
+            if photons.undispersed == 1:
+                dealt = bands + (sight.band + sight.deal) % DEALS
+                undispersed = sum_group(photons, receivers, met, dealt, sight.band)
+                total_band += undispersed * real(wp.static(float(DEALS)))
+            total_band *= density
+            if lights.direct == 1:
+                lamp = int(0)
+                while lamp < receivers.lamps:
+                    irradiance = direct_irradiance(scene, lights.lamps, lamp, met, sight)
+                    total_band += irradiance * receivers.spread[lamp, met.prim, sight.band]
+                    lamp += 1
+            sums[row, sight.band] += wp.float64(scale * total_band)
 
     return gather

@@ -15,12 +15,12 @@ import scenes
 from sim.photons.lamp_structs import AIM_AREA, AIM_BASE, AIM_CELLS, AIM_CONE
 from sim.scene_data import CompiledScene
 
-__all__ = ["Aim", "View", "find_aims"]
+__all__ = ["Aim", "View", "find_aims", "flux_to_glass"]
 
 FloatArray = npt.NDArray[np.float64]
 
-SPECULAR_SHARE = 0.2
-RECEIVER_SHARE = 0.6
+SPECULAR_SHARE = 0.4
+RECEIVER_SHARE = 0.5
 """Shares of a lamp's photons aimed at specular objects and at receivers; the rest go as the lamp
 radiates. They divide effort, not light: any positive shares give the same expected picture."""
 
@@ -56,6 +56,7 @@ class Aim:
         frame: (3, 3) rows u, v, normal of the rectangle.
         half: (2,) half sizes of the rectangle [m].
         radius: of the sphere [m].
+        specular: whether glass is aimed at.
         distribution: of an area's points, see `sim.photons.lamp_structs`; else empty.
     """
 
@@ -65,6 +66,7 @@ class Aim:
     frame: FloatArray
     half: FloatArray
     radius: float
+    specular: bool
     distribution: FloatArray
 
 
@@ -101,17 +103,48 @@ def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[
     return aims
 
 
+def flux_to_glass(emitter: Any, aims: list[Aim], centre: FloatArray) -> float:
+    """About how much of a lamp's flux meets glass that can be aimed at, as a fraction.
+
+    Args:
+        emitter: the lamp.
+        aims: what its photons are aimed at.
+        centre: (3,) where the lamp is, in the local frame [m].
+    """
+    if isinstance(emitter, scenes.Beam):
+        return 1.0
+    total = 0.0
+    for aim in (one for one in aims if one.specular):
+        offset = aim.centre - centre
+        distance = max(float(np.linalg.norm(offset)), aim.radius)
+        part = 0.5 * (1.0 - np.sqrt(1.0 - (aim.radius / distance) ** 2))  # Ω/4π of its cone
+        if isinstance(emitter, scenes.RectangleLamp):
+            part *= 4.0 * max(float(offset @ emitter.frame()[2]) / distance, 0.0)
+        elif isinstance(emitter, scenes.Spot):
+            part /= np.sin(0.5 * np.radians(emitter.half_angle_deg)) ** 2
+        total += part
+    return float(min(total, 1.0))
+
+
 def _base(share: float) -> Aim:
     """The lamp's own distribution."""
-    return Aim(share, int(AIM_BASE), np.zeros(3), np.eye(3), np.zeros(2), 0.0, np.zeros(0))
+    return Aim(share, int(AIM_BASE), np.zeros(3), np.eye(3), np.zeros(2), 0.0, False, np.zeros(0))
 
 
 def _cone(share: float, compiled: CompiledScene, item: scenes.SceneObject, margin: float) -> Aim:
     """The cone around an object's bounding sphere, larger by `margin`."""
     assert not isinstance(item.shape, scenes.Plane)
     centre, radius = item.shape.bounding_sphere()
-    local = compiled.to_local(centre)
-    return Aim(share, int(AIM_CONE), local, np.eye(3), np.zeros(2), radius + margin, np.zeros(0))
+    return Aim(
+        share,
+        int(AIM_CONE),
+        compiled.to_local(centre),
+        np.eye(3),
+        np.zeros(2),
+        radius + margin,
+        isinstance(item.material, scenes.Dielectric),
+        np.zeros(0),
+    )
 
 
 def _area(share: float, compiled: CompiledScene, prim: int, view: View | None) -> Aim:
@@ -126,7 +159,7 @@ def _area(share: float, compiled: CompiledScene, prim: int, view: View | None) -
         seen = view.density(prim, frame, centre, half, cells)
         if seen.sum() > 0.0:
             density = UNIFORM_PART * density + (1.0 - UNIFORM_PART) * seen / seen.sum()
-    return Aim(share, int(AIM_AREA), centre, frame, half, 0.0, _distribution(density))
+    return Aim(share, int(AIM_AREA), centre, frame, half, 0.0, False, _distribution(density))
 
 
 def _distribution(density: FloatArray) -> FloatArray:

@@ -53,6 +53,7 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         half_v: real
         radius: real
         sin2_half: real  # sin² of half the cone's half angle
+        widening: real  # of a beam, per length: the tangent of its half angle
         flux: real
         first_target: int
         target_count: int

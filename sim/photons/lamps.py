@@ -8,7 +8,7 @@ import numpy.typing as npt
 import warp as wp
 
 import scenes
-from sim.photons.aiming import View, find_aims
+from sim.photons.aiming import View, find_aims, flux_to_glass
 from sim.photons.lamp_structs import (
     AIM_CELLS,
     BEAM,
@@ -28,7 +28,7 @@ __all__ = ["Lamps", "Stream", "compile_lamps"]
 
 FloatArray = npt.NDArray[np.float64]
 
-EQUAL_SHARE = 0.2
+EQUAL_SHARE = 0.4
 """Share of the photons that is divided equally among the emitters, whatever their flux."""
 
 
@@ -69,6 +69,7 @@ def compile_lamps(
     photons: int,
     *,
     view: View | None = None,
+    direct: bool = True,
 ) -> Lamps:
     """Lay the emitters out and share `photons` among them and their targets.
 
@@ -77,6 +78,7 @@ def compile_lamps(
         edges_nm: band edges of the film; light outside of them is not emitted.
         photons: photons of one pass.
         view: what the camera sees, so that most photons are aimed there; None: no camera.
+        direct: whether what comes straight from a lamp is worth photons; else only glass is.
 
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.
@@ -91,14 +93,21 @@ def compile_lamps(
         allowed = f"an emitter that shines between {edges_nm[0]:g} and {edges_nm[-1]:g} nm"
         problem = scenes.Problem("emitters", f"none gives light; it needs {allowed}", None, allowed)
         raise scenes.SceneError(scene.source_name, [problem])
-    counts = _share(photons, _emitter_shares([flux for _, _, flux in shining]))
+    aimed = [find_aims(compiled, emitter, view) for emitter, _, _ in shining]
+    useful = [flux for _, _, flux in shining]
+    if not direct:
+        useful = [
+            flux * flux_to_glass(emitter, aims, compiled.to_local(emitter.position))
+            for (emitter, _, flux), aims in zip(shining, aimed, strict=True)
+        ]
+    counts = _share(photons, _emitter_shares(useful))
     emitters: list[tuple[Any, ...]] = []
     targets: list[tuple[Any, ...]] = []
     segments: list[tuple[Any, ...]] = []
     streams: list[Stream] = []
     distributions: list[FloatArray] = []
     for row, (emitter, spectrum, flux) in enumerate(shining):
-        aims = find_aims(compiled, emitter, view)
+        aims = aimed[row]
         pieces, shares = _segments(spectrum)
         emitters.append(
             (
@@ -146,11 +155,11 @@ def _film_part(
 
 
 def _emitter_shares(fluxes: list[float]) -> list[float]:
-    """Each emitter's share of the photons: by flux, and a part of them equally.
+    """Each emitter's share of the photons: by useful flux, and a part of them equally.
 
     So a faint beam beside a bright lamp is not made of a handful of photons.
     """
-    total = sum(fluxes)
+    total = sum(fluxes) or 1.0
     return [EQUAL_SHARE / len(fluxes) + (1.0 - EQUAL_SHARE) * flux / total for flux in fluxes]
 
 
@@ -191,24 +200,25 @@ def _guide(cdf: FloatArray) -> npt.NDArray[np.int32]:
 
 
 def _emitter_row(compiled: CompiledScene, emitter: Any) -> tuple[Any, ...]:
-    """The geometric fields of an Emitter: kind to sin2_half."""
+    """The geometric fields of an Emitter: kind to widening."""
     centre = compiled.to_local(emitter.position)
     frame = np.eye(3)
     if isinstance(emitter, scenes.Beam):
         frame = np.stack(emitter.frame())
         sin2_half = np.sin(0.5 * np.radians(emitter.divergence_deg)) ** 2
+        widening = np.tan(np.radians(emitter.divergence_deg))
         if isinstance(emitter.profile, scenes.RoundProfile):
             radius = emitter.profile.radius
-            return int(BEAM), 1, centre, frame, radius, radius, radius, sin2_half
+            return int(BEAM), 1, centre, frame, radius, radius, radius, sin2_half, widening
         half_u, half_v = 0.5 * emitter.profile.width, 0.5 * emitter.profile.height
-        return int(BEAM), 0, centre, frame, half_u, half_v, 0.0, sin2_half
+        return int(BEAM), 0, centre, frame, half_u, half_v, 0.0, sin2_half, widening
     if isinstance(emitter, scenes.Point):
-        return int(POINT), 0, centre, frame, 0.0, 0.0, 0.0, 1.0
+        return int(POINT), 0, centre, frame, 0.0, 0.0, 0.0, 1.0, 0.0
     if isinstance(emitter, scenes.Spot):
         sin2_half = np.sin(0.5 * np.radians(emitter.half_angle_deg)) ** 2
-        return int(SPOT), 0, centre, axis_frame(emitter.direction), 0.0, 0.0, 0.0, sin2_half
+        return int(SPOT), 0, centre, axis_frame(emitter.direction), 0.0, 0.0, 0.0, sin2_half, 0.0
     if isinstance(emitter, scenes.SphereLamp):
-        return int(SPHERE_LAMP), 0, centre, frame, 0.0, 0.0, emitter.radius, 1.0
+        return int(SPHERE_LAMP), 0, centre, frame, 0.0, 0.0, emitter.radius, 1.0, 0.0
     frame = np.stack(emitter.frame())
     half_u, half_v = 0.5 * emitter.size[0], 0.5 * emitter.size[1]
-    return int(RECTANGLE_LAMP), 0, centre, frame, half_u, half_v, 0.0, 1.0
+    return int(RECTANGLE_LAMP), 0, centre, frame, half_u, half_v, 0.0, 1.0, 0.0

@@ -47,7 +47,8 @@ def make_map_structs(precision: str) -> SimpleNamespace:
     """Struct Map: photons in cell order.
 
     `weight` is what a photon adds, once multiplied by the kernel, to the sum of its `group`:
-    the groups are those of `sim.photons.receivers`.
+    the groups are those of `sim.photons.receivers`. `undispersed` is 0 if those of undispersed
+    photons are all empty.
     """
     types = precision_types(precision)
     real, vec3 = types.real, types.vec3
@@ -56,6 +57,7 @@ def make_map_structs(precision: str) -> SimpleNamespace:
     class Map:
         grid: wp.uint64
         radius: real
+        undispersed: int
         position: wp.array(dtype=vec3)
         weight: wp.array(dtype=real)
         surface: wp.array(dtype=int)
@@ -182,6 +184,7 @@ def build_photon_map(
         threads=threads, stop=stop,
     )
     grid.build(sorted_map.position, cell, groups=sorted_map.group)
+    sorted_map.undispersed = int(np.any(loose.group.numpy() >= receivers.bands))
     sorted_map.grid = grid.id
     return PhotonMap(sorted_map, grid, count)
 

@@ -19,6 +19,7 @@ from sim.photons.energy import BOOK_COLUMNS
 from sim.photons.lamp_structs import make_lamp_structs
 from sim.photons.photon_structs import (
     add_event,
+    has_events,
     make_photon_structs,
     mark_dispersed,
     surface_key,
@@ -139,13 +140,14 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                 alive = False
                 if met.event == EVENT_DEPOSIT:
                     deposited += flux
-                    slot = wp.atomic_add(out_counts, job.range_row, 0, 1)
-                    if slot < job.slot_count:
-                        store(
-                            out_photons, job.first_slot + slot, met.point, ray.direction,
-                            wavelength_nm, flux, surface_key(met.prim, met.face, met.side),
-                            history, job.emitter,
-                        )
+                    if job.store_direct == 1 or has_events(history):
+                        slot = wp.atomic_add(out_counts, job.range_row, 0, 1)
+                        if slot < job.slot_count:
+                            store(
+                                out_photons, job.first_slot + slot, met.point, ray.direction,
+                                wavelength_nm, flux, surface_key(met.prim, met.face, met.side),
+                                history, job.emitter,
+                            )
                 elif met.event == EVENT_ABSORB:
                     absorbed += flux
                 else:

@@ -12,6 +12,7 @@ __all__ = [
     "MAX_FACES",
     "MAX_OBJECTS",
     "add_event",
+    "has_events",
     "is_dispersed",
     "make_photon_structs",
     "mark_dispersed",
@@ -42,6 +43,12 @@ def add_event(history: int, refracts: int):
     if ((history >> shift) & 1023) == 1023:
         return history
     return history + (1 << shift)
+
+
+@wp.func
+def has_events(history: int):
+    """True unless the photon came straight from its lamp."""
+    return (history & 1073741823) != 0
 
 
 @wp.func
@@ -91,6 +98,7 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         run: int  # photons a thread traces
         stop: int  # the range's end
         max_interactions: int
+        store_direct: int  # 0: what comes straight from the lamp is booked, but not stored
         branch_threshold: real
 
     return SimpleNamespace(Photons=Photons, Job=Job)

@@ -59,6 +59,7 @@ def trace_photons(
     pass_index: int,
     max_interactions: int,
     threads: int,
+    store_direct: bool = True,
     stop: threading.Event | None = None,
     on_done: Callable[[int], None] | None = None,
 ) -> PhotonBatch:
@@ -71,6 +72,7 @@ def trace_photons(
         pass_index: which pass: it alone decides the scramble.
         max_interactions: surfaces that one photon and all its branches may meet.
         threads: CPU threads.
+        store_direct: also store what comes straight from a lamp; else it is only in the books.
         stop: once set, from another thread, tracing ends; the batch is then incomplete.
         on_done: told of finished photons.
     """
@@ -82,7 +84,9 @@ def trace_photons(
             room = count * _SLOTS_PER_PHOTON
             shares.append(_Share(row, start, count, slot, room))
             slot += room
-    run = _Run(compiled, lamps, seed, pass_index, max_interactions, threads, stop)
+    run = _Run(
+        compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, stop
+    )
     photons, counts, books = run.trace(shares, slot, on_done)
     short = [i for i, share in enumerate(shares) if counts[i] > share.slot_count]
     if short:
@@ -111,6 +115,7 @@ class _Run:
     pass_index: int
     max_interactions: int
     threads: int
+    store_direct: bool
     stop: threading.Event | None
 
     def trace(
@@ -158,5 +163,6 @@ class _Run:
         job.run = self._run_length
         job.stop = share.start + share.count
         job.max_interactions = self.max_interactions
+        job.store_direct = int(self.store_direct)
         job.branch_threshold = BRANCH_THRESHOLD
         return job

@@ -58,7 +58,9 @@ def bin_photons(photons):
 def pair(request, trace_passes):
     """The picture's irradiance in blocks, and the bins of each pass."""
     scene = make_scene(-5.0 if request.param == "straight" else 0.57)
-    settings = sim.RenderSettings(photons=PHOTONS, passes=PASSES, radius=0.02, alpha=1.0)
+    settings = sim.RenderSettings(
+        photons=PHOTONS, passes=PASSES, radius=0.02, alpha=1.0, direct_light="photons"
+    )
     picture = sim.render(scene, settings)
     blocks = picture.spectral_radiance.reshape(BLOCKS, PIXELS, BLOCKS, PIXELS, FILM.bands)
     passes = trace_passes(scene, photons=PHOTONS, passes=PASSES, aimed=True)

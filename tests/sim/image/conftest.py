@@ -21,6 +21,7 @@ class Darkroom:
         radius: float,
         passes: int = 1,
         precision: str = "float64",
+        direct_light: str = "photons",
     ) -> None:
         from sim.device import start_device
         from sim.photons.lamps import compile_lamps
@@ -35,9 +36,11 @@ class Darkroom:
         self.lamps = compile_lamps(self.compiled, self.edges_nm, photons)
         self.receivers = compile_receivers(self.compiled, self.lamps, self.edges_nm)
         self.radius = radius
+        self.direct = direct_light == "lamps"
         self.batches = [
             trace_photons(
-                self.compiled, self.lamps, seed=0, pass_index=i, max_interactions=64, threads=2
+                self.compiled, self.lamps, seed=0, pass_index=i, max_interactions=64, threads=2,
+                store_direct=direct_light == "photons",
             )
             for i in range(passes)
         ]
@@ -60,14 +63,17 @@ class Darkroom:
         """Expose a film to one pass."""
         from sim.image.camera import compile_camera
         from sim.image.film import expose
+        from sim.image.sight import compose_lights
 
         size = self.scene.film.model_copy(update={"width": film.width, "height": film.height})
         expose(
             film,
             self.compiled,
             compile_camera(self.compiled, camera, size),
-            self.maps[pass_index],
-            self.receivers,
+            compose_lights(
+                self.compiled.precision, self.maps[pass_index], self.receivers, self.lamps,
+                direct=self.direct,
+            ),
             seed=0,
             pass_index=pass_index,
             threads=2,
