@@ -14,7 +14,7 @@ from typing import Any
 
 import warp as wp
 
-__all__ = ["Range", "cut_ranges", "launch_ranges"]
+__all__ = ["Range", "cut_ranges", "launch_ranges", "load_kernels"]
 
 Range = tuple[int, int]
 """(start, count) of the indices that one launch covers."""
@@ -29,6 +29,15 @@ _POLL_S = 0.1
 def cut_ranges(total: int, size: int) -> list[Range]:
     """Cut `total` indices into ranges of `size` (the last one shorter)."""
     return [(start, min(size, total - start)) for start in range(0, total, size)]
+
+
+def load_kernels(kernels: Sequence[Any], *, device: str, threads: int) -> None:
+    """Compile or load the modules of `kernels`, on as many cores as there are.
+
+    A launch would do so too, one after the other: most of a first run's time.
+    """
+    modules = [kernel.module for kernel in kernels]
+    wp.force_load(device, modules, max_workers=threads)
 
 
 def launch_ranges(
@@ -58,8 +67,7 @@ def launch_ranges(
         KeyboardInterrupt: within one range's time of Ctrl-C, all workers having stopped.
     """
     # Recording loads the kernel's module and packs the arguments, which is safe in one thread at
-    # a time; only the native call is in several. (Loading the module beforehand would compile it
-    # once more, for the block size of a GPU.)
+    # a time; only the native call is in several.
     with _PACKING:
         commands = _record(kernel, ranges, inputs_of, device, run)
     pending: queue.SimpleQueue[int] = queue.SimpleQueue()

@@ -26,13 +26,16 @@ import scenes
 from sim.device import start_device
 from sim.errors import SettingsError
 from sim.image.camera import compile_camera
+from sim.image.camera_path import make_render_camera
 from sim.image.film import Film, create_film, expose
 from sim.image.picture import Picture
 from sim.image.sight import compose_lights
-from sim.image.survey import Survey, survey_view
+from sim.image.survey import Survey, make_measure_footprints, survey_view
+from sim.launch import load_kernels
 from sim.photons.energy import EnergyBooks
 from sim.photons.lamps import Lamps, compile_lamps
-from sim.photons.photon_map import PhotonMap, build_photon_map
+from sim.photons.photon_map import PhotonMap, build_photon_map, make_collect, make_reorder
+from sim.photons.photon_path import make_trace_photons
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import Progress, ProgressCallback
@@ -123,6 +126,7 @@ def render(
         compiled = compile_scene(scene, precision=plan.precision, device=device)
         edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
         assert scene.camera is not None  # require_renderable has seen to it
+        _load_all_kernels(compiled, plan.threads)
         camera = compile_camera(compiled, scene.camera, scene.film)
         survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
         lamps = compile_lamps(
@@ -150,6 +154,15 @@ def render(
         settings=plan,
         timings=watch.timings,
     )
+
+
+def _load_all_kernels(compiled: CompiledScene, threads: int) -> None:
+    """Compile what a rendering launches, the largest first, on every core."""
+    special = (make_render_camera, make_trace_photons, make_measure_footprints)
+    general = (make_collect, make_reorder)
+    kernels = [make(compiled.precision, compiled.features) for make in special]
+    kernels += [make(compiled.precision) for make in general]
+    load_kernels(kernels, device=compiled.device, threads=threads)
 
 
 def radius_shrinkage(pass_index: int, alpha: float) -> float:

@@ -37,7 +37,7 @@ __all__ = ["make_film_struct", "make_render_camera"]
 MAX_INTERACTIONS = wp.constant(48)
 """Surfaces that a camera path and its branches may meet."""
 
-BRANCH_THRESHOLD = wp.constant(0.1)
+BRANCH_THRESHOLD = wp.constant(0.03)
 """A side branch of less throughput plays Russian roulette for this much."""
 
 STACK_SIZE = wp.constant(8)
@@ -135,8 +135,15 @@ def make_render_camera(precision: str, features: Features) -> Any:
                     ray.prim = met.prim
                     ray.face = met.face
                     throughput = main
+                    if depth == STACK_SIZE:
+                        # No room for a side branch: chance chooses one for the light of both.
+                        both = main + side
+                        if play_roulette(side, both, sight.key, wp.uint64(step)) > real(0.0):
+                            ray.direction = weaker
+                        throughput = both
+                        side = real(0.0)
                     side = play_roulette(side, threshold, sight.key, wp.uint64(step))
-                    if side > real(0.0) and depth < STACK_SIZE:
+                    if side > real(0.0):
                         side_ray = ray_type()
                         side_ray.origin = met.point
                         side_ray.direction = weaker
@@ -185,9 +192,8 @@ def make_render_camera(precision: str, features: Features) -> Any:
             sight.deal = int(sight.key >> wp.uint64(40))
             sight.weight = real(1.0)
             sight.shadow_rays = 1
-            # Neighbours to the right and below have turns of their own: no stripes.
-            place = pixel % camera.width + pixel // camera.width * (film.turns // 2)
-            sight.band = (place + film.turn) % film.turns
+            # Where the round starts is each pixel's own: turns leave neither stripes nor checks.
+            sight.band = (int(pixel_key >> wp.uint64(40)) + film.turn) % film.turns
             while sight.band < receivers.bands:
                 offset_nm = receivers.band_width_nm * (real(sight.band) + inside_band)
                 sight.wavelength_nm = receivers.first_edge_nm + offset_nm

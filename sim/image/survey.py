@@ -17,7 +17,7 @@ from sim.image.camera import make_camera_functions, make_camera_struct
 from sim.scene_data import CompiledScene
 from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
 
-__all__ = ["Survey", "survey_view"]
+__all__ = ["Survey", "make_measure_footprints", "survey_view"]
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -26,7 +26,7 @@ from sim.photons.receivers import DEALS, make_receiver_structs
 from sim.precision import precision_types
 from sim.scene_data import CompiledScene
 
-__all__ = ["PhotonMap", "build_photon_map", "make_map_structs"]
+__all__ = ["PhotonMap", "build_photon_map", "make_collect", "make_map_structs", "make_reorder"]
 
 _RANGE_SIZE = 65536
 
