@@ -29,7 +29,7 @@ from sim.image.gather import make_gather
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
 from sim.sampling.counter import hash64
 from sim.sampling.kronecker import r1_point, r2_point
-from sim.sampling.roulette import play_roulette
+from sim.sampling.roulette import choose_branches
 from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
 
 __all__ = ["make_film_struct", "make_render_camera"]
@@ -127,22 +127,17 @@ def make_render_camera(precision: str, features: Features) -> Any:
                     side = throughput * met.reflectance
                     main = (throughput - side) * met.eta * met.eta
                     if refracts == 0:
-                        swapped = side
-                        side = main
-                        main = swapped
+                        main = throughput * met.reflectance
+                        side = (throughput - main) * met.eta * met.eta
                     ray.origin = met.point
                     ray.direction = stronger
                     ray.prim = met.prim
                     ray.face = met.face
-                    throughput = main
-                    if depth == STACK_SIZE:
-                        # No room for a side branch: chance chooses one for the light of both.
-                        both = main + side
-                        if play_roulette(side, both, sight.key, wp.uint64(step)) > real(0.0):
-                            ray.direction = weaker
-                        throughput = both
-                        side = real(0.0)
-                    side = play_roulette(side, threshold, sight.key, wp.uint64(step))
+                    throughput, side, swapped = choose_branches(
+                        main, side, threshold, depth < STACK_SIZE, sight.key, wp.uint64(step)
+                    )
+                    if swapped:
+                        ray.direction = weaker
                     if side > real(0.0):
                         side_ray = ray_type()
                         side_ray.origin = met.point

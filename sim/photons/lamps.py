@@ -8,7 +8,7 @@ import numpy.typing as npt
 import warp as wp
 
 import scenes
-from sim.photons.aiming import View, find_aims, flux_to_glass
+from sim.photons.aiming import Aim, View, find_aims, flux_to_glass
 from sim.photons.lamp_structs import (
     AIM_CELLS,
     BEAM,
@@ -83,7 +83,7 @@ def compile_lamps(
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.
     """
-    scene, structs = compiled.scene, make_lamp_structs(compiled.precision)
+    scene = compiled.scene
     shining = [
         (emitter, *part)
         for emitter in scene.emitters
@@ -101,45 +101,63 @@ def compile_lamps(
             for (emitter, _, flux), aims in zip(shining, aimed, strict=True)
         ]
     counts = _share(photons, _emitter_shares(useful))
-    emitters: list[tuple[Any, ...]] = []
-    targets: list[tuple[Any, ...]] = []
-    segments: list[tuple[Any, ...]] = []
-    streams: list[Stream] = []
-    distributions: list[FloatArray] = []
-    for row, (emitter, spectrum, flux) in enumerate(shining):
-        aims = aimed[row]
-        pieces, shares = _segments(spectrum)
-        emitters.append(
-            (
-                *_emitter_row(compiled, emitter), flux,
-                len(targets), len(aims), len(segments), len(pieces),
-                sum(len(one) for one in distributions),
-            )
-        )
-        segments.extend(pieces)
-        distributions.append(shares)
-        for aim, count in zip(aims, _share(counts[row], [a.share for a in aims]), strict=True):
-            streams.append(Stream(row, len(targets), count))
-            first_cdf = sum(len(one) for one in distributions)
-            distributions.extend(aim.distribution.reshape(-1, int(AIM_CELLS) + 1))
-            targets.append(
-                (
-                    aim.kind, aim.centre, aim.frame, *aim.half, aim.radius, first_cdf,
-                    float(count),
-                )
-            )
-    data = structs.Lamps()
-    data.emitters = struct_array(structs.Emitter, emitters, compiled.device)
-    data.targets = struct_array(structs.Target, targets, compiled.device)
-    data.segments = struct_array(structs.Segment, segments, compiled.device)
-    data.sobol = wp.array(sobol_tables(), dtype=wp.uint32, device=compiled.device)
-    cdf = np.concatenate(distributions)
-    guide = np.concatenate([_guide(one) for one in distributions])
-    data.guide = wp.array(guide, dtype=int, device=compiled.device)
-    types = precision_types(compiled.precision)
-    data.cdf = wp.array(cdf.astype(types.dtype), dtype=types.real, device=compiled.device)
+    tables = _Tables()
+    for (emitter, spectrum, flux), aims, count in zip(shining, aimed, counts, strict=True):
+        tables.add(_emitter_row(compiled, emitter), spectrum, flux, aims, count)
     flux = sum(flux for _, _, flux in shining)
-    return Lamps(data, tuple(streams), flux, tuple(spectrum for _, spectrum, _ in shining))
+    spectra = tuple(spectrum for _, spectrum, _ in shining)
+    return Lamps(tables.on_device(compiled), tuple(tables.streams), flux, spectra)
+
+
+class _Tables:
+    """Rows of the device's arrays as they grow, lamp by lamp, and the streams they make."""
+
+    def __init__(self) -> None:
+        self.emitters: list[tuple[Any, ...]] = []
+        self.targets: list[tuple[Any, ...]] = []
+        self.segments: list[tuple[Any, ...]] = []
+        self.streams: list[Stream] = []
+        self.distributions: list[FloatArray] = []
+
+    def add(
+        self,
+        geometry: tuple[Any, ...],
+        spectrum: EmissionSpectrum,
+        flux: float,
+        aims: list[Aim],
+        photons: int,
+    ) -> None:
+        """Add a lamp with its spectrum and its aims, among which `photons` are shared out."""
+        pieces, shares = _segments(spectrum)
+        counts = (len(self.targets), len(aims), len(self.segments), len(pieces))
+        self.emitters.append((*geometry, flux, *counts, self._add_distribution(shares)))
+        self.segments.extend(pieces)
+        for aim, count in zip(aims, _share(photons, [a.share for a in aims]), strict=True):
+            self.streams.append(Stream(len(self.emitters) - 1, len(self.targets), count))
+            first_cdf = self._add_distribution(*aim.distribution.reshape(-1, int(AIM_CELLS) + 1))
+            shape = (aim.kind, aim.centre, aim.frame, *aim.half, aim.radius)
+            self.targets.append((*shape, first_cdf, float(count)))
+
+    def _add_distribution(self, *functions: FloatArray) -> int:
+        """Where the given distribution functions start among all of them."""
+        first = sum(len(one) for one in self.distributions)
+        self.distributions.extend(functions)
+        return first
+
+    def on_device(self, compiled: CompiledScene) -> Any:
+        """The device-side Lamps struct, but for the seeds, which are a pass's own."""
+        structs, device = make_lamp_structs(compiled.precision), compiled.device
+        types = precision_types(compiled.precision)
+        data = structs.Lamps()
+        data.emitters = struct_array(structs.Emitter, self.emitters, device)
+        data.targets = struct_array(structs.Target, self.targets, device)
+        data.segments = struct_array(structs.Segment, self.segments, device)
+        data.sobol = wp.array(sobol_tables(), dtype=wp.uint32, device=device)
+        cdf = np.concatenate(self.distributions).astype(types.dtype)
+        data.cdf = wp.array(cdf, dtype=types.real, device=device)
+        guide = np.concatenate([_guide(one) for one in self.distributions])
+        data.guide = wp.array(guide, dtype=int, device=device)
+        return data
 
 
 def _film_part(

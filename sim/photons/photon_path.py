@@ -24,7 +24,7 @@ from sim.photons.photon_structs import (
     mark_dispersed,
     surface_key,
 )
-from sim.sampling.roulette import play_roulette
+from sim.sampling.roulette import choose_branches, play_roulette
 from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
 
 __all__ = ["COLOURS", "make_trace_photons"]
@@ -37,20 +37,20 @@ surface first: light that leaves the glass nearly where it would without dispers
 from few photons."""
 
 
+FLOWS = wp.types.vector(length=len(BOOK_COLUMNS) - 1, dtype=wp.float64)
+"""Flux deposited, absorbed, escaped and culled: the books' columns behind the first."""
+
+
 @functools.cache
-def make_trace_photons(precision: str, features: Features) -> Any:
-    """Kernel `trace_photons(start, scene, lamps, job, photons, counts, books)`."""
+def make_follow(precision: str, features: Features) -> object:
+    """Device function `follow(scene, job, ray, first, wavelength_nm, flux, draws, …)`."""
     transport = make_transport(precision, features)
     real, vec3, scatter = transport.real, transport.vec3, transport.scatter
     media_indices, split = transport.media_indices, transport.split
     scene_type, ray_type, hit_type = transport.Scene, transport.Ray, transport.Hit
-    lamps_type = make_lamp_structs(precision).Lamps
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
-    emit = make_emission(precision)
-    sample_wavelength = make_wavelength_function(precision)
     intersect = transport.intersect
-    flows_type = wp.types.vector(length=len(BOOK_COLUMNS) - 1, dtype=wp.float64)
 
     @wp.func
     def store(
@@ -75,7 +75,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     ):
         """Follow a photon of one wavelength, about to meet `first`, and all its branches.
 
-        Returns flux deposited, absorbed, escaped and culled.
+        Returns FLOWS.
         """
         indices = media_indices(scene, wavelength_nm)
         deposited = real(0.0)
@@ -102,7 +102,6 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                 side_flux = flux * met.reflectance
                 if refracts == 0:
                     side_flux = flux - side_flux
-                flux -= side_flux
                 side_history = add_event(history, 1 - refracts)
                 history = add_event(history, refracts)
                 ray.origin = met.point
@@ -110,31 +109,28 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                 ray.prim = met.prim
                 ray.face = met.face
                 draw = draws + wp.uint64(step)
-                if depth == STACK_SIZE:
-                    # No room for a side branch: chance chooses one of both for the light of both.
-                    both = flux + side_flux
-                    if play_roulette(side_flux, both, job.key + wp.uint64(1), draw) > real(0.0):
-                        ray.direction = weaker
-                        history = side_history
-                    flux = both
-                else:
-                    kept = play_roulette(side_flux, threshold, job.key + wp.uint64(1), draw)
-                    culled += side_flux - kept
-                    if kept > real(0.0):
-                        side_ray = ray_type()
-                        side_ray.origin = met.point
-                        side_ray.direction = weaker
-                        side_ray.prim = met.prim
-                        side_ray.face = met.face
-                        stack_ray[depth] = side_ray
-                        stack_flux[depth] = kept
-                        stack_history[depth] = side_history
-                        depth += 1
+                before = flux
+                flux, side_flux, swapped = choose_branches(
+                    flux - side_flux, side_flux, threshold, depth < STACK_SIZE,
+                    job.key + wp.uint64(1), draw,
+                )
+                if swapped:
+                    ray.direction = weaker
+                    history = side_history
+                if side_flux > real(0.0):
+                    side_ray = ray_type()
+                    side_ray.origin = met.point
+                    side_ray.direction = weaker
+                    side_ray.prim = met.prim
+                    side_ray.face = met.face
+                    stack_ray[depth] = side_ray
+                    stack_flux[depth] = side_flux
+                    stack_history[depth] = side_history
+                    depth += 1
                 # The stronger branch plays as well: a path reflected again and again, and ever
                 # fainter, would use up the interactions that the branches behind it need.
-                kept = play_roulette(flux, threshold, job.key + wp.uint64(2), draw)
-                culled += flux - kept
-                flux = kept
+                flux = play_roulette(flux, threshold, job.key + wp.uint64(2), draw)
+                culled += before - flux - side_flux
                 alive = flux > real(0.0)
             else:
                 alive = False
@@ -172,20 +168,35 @@ def make_trace_photons(precision: str, features: Features) -> Any:
             culled += flux
         for k in range(depth):
             culled += stack_flux[k]
-        return flows_type(
+        return FLOWS(
             wp.float64(deposited), wp.float64(absorbed), wp.float64(escaped), wp.float64(culled)
         )
+
+    return follow
+
+
+@functools.cache
+def make_trace_photons(precision: str, features: Features) -> Any:
+    """Kernel `trace_photons(start, scene, lamps, job, photons, counts, books)`."""
+    transport = make_transport(precision, features)
+    real, scene_type, intersect = transport.real, transport.Scene, transport.intersect
+    lamps_type = make_lamp_structs(precision).Lamps
+    photon_structs = make_photon_structs(precision)
+    photons_type, job_type = photon_structs.Photons, photon_structs.Job
+    emit = make_emission(precision)
+    sample_wavelength = make_wavelength_function(precision)
+    follow = make_follow(precision, features)
 
     @wp.func
     def trace_photon(
         scene: scene_type, lamps: lamps_type, job: job_type, index: wp.uint32,
         out_photons: photons_type, out_counts: wp.array2d(dtype=int),
     ):
-        """Emit photon `index` and follow it; see where its flux goes, as in BOOK_COLUMNS."""
+        """Emit photon `index` and follow it; returns the flux emitted, and FLOWS."""
         ray, u_wavelength, emitted = emit(
             lamps, job.emitter, job.target, job.seed_row, index, job.key
         )
-        flows = flows_type()
+        flows = FLOWS()
         if emitted > real(0.0):
             # What meets a dispersive surface first is followed in several colours at once.
             colours = int(1)
@@ -218,7 +229,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
         out_books: wp.array2d(dtype=wp.float64),
     ):
         total = wp.float64(0.0)
-        flows = flows_type()
+        flows = FLOWS()
         index = start + wp.tid() * job.run
         stop = wp.min(index + job.run, job.stop)
         while index < stop:

@@ -10,7 +10,7 @@ import warp as wp
 
 from sim.sampling.counter import hash64, to_unit
 
-__all__ = ["play_roulette"]
+__all__ = ["choose_branches", "play_roulette"]
 
 
 @wp.func
@@ -24,3 +24,22 @@ def play_roulette(weight: Any, threshold: Any, key: wp.uint64, counter: wp.uint6
     if to_unit(hash64(key, counter), weight) * threshold < weight:
         return threshold
     return type(weight)(0.0)
+
+
+@wp.func
+def choose_branches(
+    stronger: Any, weaker: Any, threshold: Any, room: bool, key: wp.uint64, counter: wp.uint64
+):
+    """What goes on of the two branches of a split, of which the weaker one needs room to wait.
+
+    With room the stronger one goes on as it is, and the weaker one plays roulette. Without, chance
+    lets one of them go on for the light of both.
+
+    Returns:
+        The weights that go on at once and that wait, and whether the weaker one goes on at once.
+    """
+    if room:
+        return stronger, play_roulette(weaker, threshold, key, counter), False
+    both = stronger + weaker
+    swapped = play_roulette(weaker, both, key, counter) > type(weaker)(0.0)
+    return both, type(weaker)(0.0), swapped
