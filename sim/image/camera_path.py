@@ -50,8 +50,10 @@ SHADOW_RAYS = wp.constant(4)
 def make_film_struct() -> Any:
     """Struct Film: running mean and squared deviations of each pixel and band, one row a pixel.
 
-    `sample` holds the sample that the passes of one round of turns add up to; `turn` of `turns`
-    is the pass within the round, `rounds_before` counts complete ones.
+    `sample` holds the sample that the passes of one round of turns add up to, as
+    `sim.image.gather` fills it; `turn` of `turns` is the pass within its `round`, `rounds_before`
+    counts the complete ones. `tally` holds of each pixel the running mean and squared deviations of
+    its luminance, and of the part of it that is the gather's bias, in this order.
     """
 
     @wp.struct
@@ -59,7 +61,8 @@ def make_film_struct() -> Any:
         sample: wp.array2d(dtype=wp.float64)
         mean: wp.array2d(dtype=wp.float64)
         squares: wp.array2d(dtype=wp.float64)
-        pass_index: int
+        tally: wp.array2d(dtype=wp.float64)
+        round: int
         turn: int
         turns: int
         rounds_before: int
@@ -162,10 +165,11 @@ def make_render_camera(precision: str, features: Features) -> Any:
     ):
         """Add one sample of a pixel to its row: a path for all bands, and paths for its turn's."""
         receivers = lights.receivers
-        pass_number = wp.uint32(film.pass_index)
-        pixel_key = hash64(film.key, wp.uint64(pixel))
-        x, y = r2_point(pixel_key, pass_number, receivers.band_width_nm)
-        inside_band = r1_point(pixel_key + wp.uint64(1), pass_number, receivers.band_width_nm)
+        # Spread over the turns of a round, and drawn anew for the next one: rounds are replicates.
+        key = hash64(hash64(film.key, wp.uint64(pixel)), wp.uint64(film.round))
+        turn = wp.uint32(film.turn)
+        x, y = r2_point(key, turn, receivers.band_width_nm)
+        inside_band = r1_point(key + wp.uint64(1), turn, receivers.band_width_nm)
         ray = ray_type()
         ray.origin = camera.position
         ray.direction = look(
@@ -179,21 +183,32 @@ def make_render_camera(precision: str, features: Features) -> Any:
         sight.weight = real(1.0) / real(film.turns)
         half_range_nm = real(0.5) * receivers.band_width_nm * real(receivers.bands)
         sight.wavelength_nm = receivers.first_edge_nm + half_range_nm
-        sight.key = hash64(pixel_key + wp.uint64(2), wp.uint64(film.pass_index))
-        sight.lamp_key = pixel_key + wp.uint64(3)
-        sight.sample = film.pass_index
+        sight.key = hash64(key + wp.uint64(2), wp.uint64(film.turn))
+        sight.lamp_key = key + wp.uint64(3)
+        sight.sample = film.turn
         sight.shadow_rays = SHADOW_RAYS
         if follow(scene, lights, ray, sight, film.sample) == 1:
             sight.deal = int(sight.key >> wp.uint64(40))
             sight.weight = real(1.0)
             sight.shadow_rays = 1
             # Where the round starts is each pixel's own: turns leave neither stripes nor checks.
-            sight.band = (int(pixel_key >> wp.uint64(40)) + film.turn) % film.turns
+            sight.band = (int(key >> wp.uint64(40)) + film.turn) % film.turns
             while sight.band < receivers.bands:
                 offset_nm = receivers.band_width_nm * (real(sight.band) + inside_band)
                 sight.wavelength_nm = receivers.first_edge_nm + offset_nm
                 follow(scene, lights, ray, sight, film.sample)
                 sight.band += film.turns
+
+    @wp.func
+    def add_value(
+        mean: wp.array2d(dtype=wp.float64), squares: wp.array2d(dtype=wp.float64), row: int,
+        mean_column: int, squares_column: int, value: wp.float64, before: int,
+    ):
+        """Update a running mean and its sum of squared deviations (Welford 1962)."""
+        delta = value - mean[row, mean_column]
+        now = mean[row, mean_column] + delta / wp.float64(before + 1)
+        mean[row, mean_column] = now
+        squares[row, squares_column] += delta * (value - now)
 
     @wp.kernel(module="unique", enable_backward=False)
     def render_camera(
@@ -203,19 +218,20 @@ def make_render_camera(precision: str, features: Features) -> Any:
         bands = lights.receivers.bands
         if film.turn == 0:
             column = int(0)
-            while column < bands + lights.receivers.lamps:
+            while column <= bands + lights.receivers.lamps:
                 film.sample[pixel, column] = wp.float64(0.0)
                 column += 1
         sample_pixel(scene, camera, lights, film, pixel)
         if film.turn == film.turns - 1:
-            share = wp.float64(1.0) / wp.float64(film.rounds_before + 1)
+            luminance = wp.float64(0.0)
             band = int(0)
             while band < bands:
                 value = film.sample[pixel, band]
-                delta = value - film.mean[pixel, band]
-                mean = film.mean[pixel, band] + delta * share
-                film.mean[pixel, band] = mean
-                film.squares[pixel, band] += delta * (value - mean)
+                luminance += value * wp.float64(lights.receivers.luminance[band])
+                add_value(film.mean, film.squares, pixel, band, band, value, film.rounds_before)
                 band += 1
+            bias = film.sample[pixel, bands + lights.receivers.lamps]
+            add_value(film.tally, film.tally, pixel, 0, 1, luminance, film.rounds_before)
+            add_value(film.tally, film.tally, pixel, 2, 3, bias, film.rounds_before)
 
     return render_camera

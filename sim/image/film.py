@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import warp as wp
 
+from sim.image.accuracy import Accuracy
 from sim.image.camera_path import make_film_struct, make_render_camera
 from sim.launch import cut_ranges, launch_ranges
 from sim.sampling.counter import fold_key
@@ -48,22 +49,37 @@ class Film:
         """(height, width, bands)."""
         return self.height, self.width, len(self.edges_nm) - 1
 
+    @property
+    def rounds(self) -> int:
+        """Complete samples so far: independent replicates of each pixel."""
+        return self.passes // self.turns
+
     def radiance(self) -> FloatArray:
         """Mean over passes, (height, width, bands) [W m⁻² sr⁻¹ nm⁻¹]."""
         mean: FloatArray = self.data.mean.numpy().reshape(self.shape)
         return mean
 
     def standard_error(self) -> FloatArray:
-        """One σ of the mean, same shape and unit; NaN from a single sample.
+        """One σ of the mean, same shape and unit; NaN from a single sample."""
+        return self._error_of(self.data.squares.numpy()).reshape(self.shape)
 
-        Rounds of `turns` passes are independent estimates: σ² = Σ(x − x̄)² / (n (n − 1)).
-        """
-        rounds = self.passes // self.turns
-        if rounds < 2:
-            return np.full(self.shape, np.nan)
-        squares = self.data.squares.numpy().reshape(self.shape)
-        error: FloatArray = np.sqrt(squares / (rounds * (rounds - 1.0)))
-        return error
+    def accuracy(self) -> Accuracy:
+        """How sure the luminance of each pixel is, noise and bias apart."""
+        tally = self.data.tally.numpy().reshape(*self.shape[:2], 4)
+        return Accuracy(
+            luminance=tally[..., 0].copy(),
+            noise=self._error_of(tally[..., 1]),
+            bias=tally[..., 2].copy(),
+            bias_noise=self._error_of(tally[..., 3]),
+            replicates=self.rounds,
+        )
+
+    def _error_of(self, squares: FloatArray) -> FloatArray:
+        """Rounds are independent estimates: σ² = Σ(x − x̄)² / (n (n − 1)) of their mean."""
+        n = self.rounds
+        if n < 2:
+            return np.full(squares.shape, np.nan)
+        return np.sqrt(squares / (n * (n - 1.0)))
 
 
 def create_film(
@@ -81,22 +97,20 @@ def create_film(
     """
     data = make_film_struct()()
     size = (height * width, len(edges_nm) - 1)
-    data.sample = wp.zeros((size[0], size[1] + lamps), dtype=wp.float64, device=device)
+    data.sample = wp.zeros((size[0], size[1] + lamps + 1), dtype=wp.float64, device=device)
     data.mean = wp.zeros(size, dtype=wp.float64, device=device)
     data.squares = wp.zeros(size, dtype=wp.float64, device=device)
+    data.tally = wp.zeros((size[0], 4), dtype=wp.float64, device=device)
     return Film(height, width, np.asarray(edges_nm, dtype=np.float64), data, turns_of(passes))
 
 
 def turns_of(passes: int) -> int:
-    """Turns in which the bands behind glass are sampled: as many as leave enough replicates.
+    """Turns in which the bands behind glass are sampled: two, if that leaves two replicates.
 
     They divide the number of passes, so that every band is sampled equally often: colours stay
     neutral exactly.
     """
-    for turns, replicates in ((4, 8), (2, 4)):
-        if passes % turns == 0 and passes // turns >= replicates:
-            return turns
-    return 1
+    return 2 if passes % 2 == 0 and passes >= 4 else 1
 
 
 def expose(
@@ -118,13 +132,14 @@ def expose(
         camera: the device-side Camera struct.
         lights: the device-side Lights struct, with this pass's photons.
         seed: the run's seed.
-        pass_index: decides the position within the pixels and the bands.
+        pass_index: decides the position within the pixels and the bands; a round of turns starts
+            at a multiple of their number.
         threads: CPU threads.
         on_done: told of finished pixels.
     """
     data = film.data
-    data.pass_index = pass_index
-    data.rounds_before, data.turn = divmod(film.passes, film.turns)
+    data.rounds_before = film.rounds
+    data.round, data.turn = divmod(pass_index, film.turns)
     data.turns = film.turns
     data.key = fold_key(seed, _CAMERA_KEY)
     inputs = [compiled.data, camera, lights, data]

@@ -10,6 +10,7 @@ their irradiance E adds ``ρ E / (π Δλ)``.
 References:
     Jensen (1996), "Global illumination using photon maps", §3.2.
     Silverman (1986), *Density Estimation*, §2.10 on boundaries, §3.3 on the kernel.
+    Schucany & Sommers (1977), JASA 72, 420: a kernel's bias from a second kernel.
 """
 
 import functools
@@ -112,7 +113,7 @@ def make_gather(precision: str, features: Features) -> object:
     It adds `scale` times the reflected radiance, times the bands' width, to the bands of the
     sight's row of `sums`: to all of them, or to the sight's own, and then of undispersed photons
     from one of their deals. The columns behind the bands, one a lamp, are
-    scratch, zero before and after.
+    scratch, zero before and after; in the last one the kernel's bias adds up, as luminance.
     """
     real = precision_types(precision).real
     structs = make_scene_structs(precision)
@@ -124,44 +125,66 @@ def make_gather(precision: str, features: Features) -> object:
     direct_irradiance = make_direct_light(precision, features)
 
     @wp.func
+    def bias_kernel(x: real):
+        """b(x) = 2 (k(x) − 2 k(2x)): what Σ k w is too much by, if curvature is all that matters.
+
+        The bias of a kernel of half the disc's area is half as large, r² ∇²E / 24 for r² ∇²E / 12,
+        so twice the difference estimates it.
+        """
+        narrow = wp.max(real(1.0) - x - x, real(0.0))
+        return real(2.0) * (real(1.0) - x - narrow - narrow)
+
+    @wp.func
     def sum_group(
         photons: map_type, receivers: receivers_type, met: interaction_type, group: int, band: int
     ):
-        """Σ (1 − d²/r²) w of one group's photons, as far as they shine in `band`."""
+        """Σ k w and Σ b w of one group's photons, as far as they shine in `band`."""
         surface = surface_key(met.prim, met.face, met.side)
         inv_radius2 = real(1.0) / (photons.radius * photons.radius)
         query = wp.hash_grid_query(photons.grid, met.point, photons.radius, group)
         candidate = int(0)
         total = real(0.0)
+        bias = real(0.0)
         while wp.hash_grid_query_next(query, candidate):
             offset = photons.position[candidate] - met.point
             x = wp.dot(offset, offset) * inv_radius2
             if x < real(1.0) and photons.surface[candidate] == surface:
-                value = (real(1.0) - x) * photons.weight[candidate]
+                weight = photons.weight[candidate]
                 if group >= receivers.bands:
-                    value *= receivers.spread[photons.lamp[candidate], met.prim, band]
-                total += value
-        return total
+                    weight *= receivers.spread[photons.lamp[candidate], met.prim, band]
+                total += (real(1.0) - x) * weight
+                bias += bias_kernel(x) * weight
+        return total, bias
 
     @wp.func
     def add_groups(
-        photons: map_type, bands: int, met: interaction_type, peak: real,
+        photons: map_type, receivers: receivers_type, met: interaction_type, peak: real,
         sums: wp.array2d(dtype=wp.float64), row: int,
     ):
-        """Add `peak` (1 − d²/r²) w of every photon to its band's column, or to its lamp's."""
+        """Add `peak` k w of every photon to its band's column, or to its lamp's.
+
+        Returns the luminance of Σ `peak` b w.
+        """
+        bands = receivers.bands
         surface = surface_key(met.prim, met.face, met.side)
         inv_radius2 = real(1.0) / (photons.radius * photons.radius)
         query = wp.hash_grid_query(photons.grid, met.point, photons.radius)
         candidate = int(0)
+        bias = real(0.0)
         while wp.hash_grid_query_next(query, candidate):
             offset = photons.position[candidate] - met.point
             x = wp.dot(offset, offset) * inv_radius2
             if x < real(1.0) and photons.surface[candidate] == surface:
-                value = peak * (real(1.0) - x) * photons.weight[candidate]
+                weight = peak * photons.weight[candidate]
                 column = photons.group[candidate]
-                if column >= bands:
-                    column = bands + photons.lamp[candidate]
-                sums[row, column] += wp.float64(value)
+                if column < bands:
+                    bias += bias_kernel(x) * weight * receivers.luminance[column]
+                else:
+                    lamp = photons.lamp[candidate]
+                    bias += bias_kernel(x) * weight * receivers.spread_luminance[lamp, met.prim]
+                    column = bands + lamp
+                sums[row, column] += wp.float64((real(1.0) - x) * weight)
+        return bias
 
     @wp.func
     def gather(
@@ -175,7 +198,8 @@ def make_gather(precision: str, features: Features) -> object:
         inside = kernel_integral(scene, met, photons.radius)
         density = real(2.0) / (real(PI) * photons.radius * photons.radius * inside)
         if sight.band == ALL_BANDS:
-            add_groups(photons, bands, met, scale * density, sums, row)
+            bias = add_groups(photons, receivers, met, scale * density, sums, row)
+            sums[row, bands + receivers.lamps] += wp.float64(bias)
             lamp = int(0)
             while lamp < receivers.lamps:
                 total = sums[row, bands + lamp]
@@ -192,12 +216,15 @@ def make_gather(precision: str, features: Features) -> object:
                         band += 1
                 lamp += 1
         else:
-            total_band = sum_group(photons, receivers, met, sight.band, sight.band)
+            total_band, bias_band = sum_group(photons, receivers, met, sight.band, sight.band)
             if photons.undispersed == 1:
                 dealt = bands + (sight.band + sight.deal) % DEALS
-                undispersed = sum_group(photons, receivers, met, dealt, sight.band)
+                undispersed, bias_dealt = sum_group(photons, receivers, met, dealt, sight.band)
                 total_band += undispersed * real(wp.static(float(DEALS)))
+                bias_band += bias_dealt * real(wp.static(float(DEALS)))
             total_band *= density
+            bias_band *= density * scale * receivers.luminance[sight.band]
+            sums[row, bands + receivers.lamps] += wp.float64(bias_band)
             if lights.direct == 1:
                 lamp = int(0)
                 while lamp < receivers.lamps:

@@ -23,6 +23,7 @@ from sim.photons.lamps import Lamps
 from sim.precision import precision_types
 from sim.scene_data import CompiledScene
 from spectra import EmissionSpectrum
+from spectra.observer import observer
 
 __all__ = ["DEALS", "compile_receivers", "make_receiver_structs"]
 
@@ -41,7 +42,8 @@ def make_receiver_structs(precision: str) -> SimpleNamespace:
 
     `reflectance[object, i]` holds at `first_nm + i` nm and is linear between; it is divided by
     π. `spread[lamp, object, band]` is the share of the lamp's flux in the band, times the
-    reflectance there over π. Groups: `bands` bands, then `DEALS`.
+    reflectance there over π. `luminance[band]` is that of unit radiance in the band [cd/m²], and
+    `spread_luminance[lamp, object]` that of `spread`. Groups: `bands` bands, then `DEALS`.
     """
     real = precision_types(precision).real
 
@@ -54,6 +56,8 @@ def make_receiver_structs(precision: str) -> SimpleNamespace:
         first_nm: real
         reflectance: wp.array2d(dtype=real)
         spread: wp.array3d(dtype=real)
+        luminance: wp.array(dtype=real)
+        spread_luminance: wp.array2d(dtype=real)
 
     return SimpleNamespace(Receivers=Receivers)
 
@@ -81,7 +85,20 @@ def compile_receivers(compiled: CompiledScene, lamps: Lamps, edges_nm: FloatArra
         reflectance.astype(types.dtype), dtype=types.real, device=compiled.device
     )
     data.spread = wp.array(spread.astype(types.dtype), dtype=types.real, device=compiled.device)
+    luminance = _luminance_weights(compiled.scene.film.observer, edges_nm)
+    data.luminance = wp.array(
+        luminance.astype(types.dtype), dtype=types.real, device=compiled.device
+    )
+    data.spread_luminance = wp.array(
+        (spread @ luminance).astype(types.dtype), dtype=types.real, device=compiled.device
+    )
     return data
+
+
+def _luminance_weights(observer_name: str, edges_nm: FloatArray) -> FloatArray:
+    """(bands,) luminance of unit radiance in each band, 683 ∫ ȳ dλ [cd/m²]."""
+    weights: FloatArray = observer(observer_name).xyz(np.eye(len(edges_nm) - 1), edges_nm)[:, 1]
+    return weights
 
 
 def _reflectances(compiled: CompiledScene, wavelength_nm: FloatArray) -> FloatArray:

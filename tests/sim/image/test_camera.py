@@ -6,7 +6,7 @@ import pytest
 import scenes
 from sim.analytic import plate_lateral_shift
 
-WIDTH, HEIGHT, PASSES = 60, 40, 4
+WIDTH, HEIGHT, PASSES = 60, 40, 32
 ETA, THICKNESS, TILT_DEG = 1.5, 0.4, (15.0, 0.0, -30.0)
 RADIUS = 0.07
 

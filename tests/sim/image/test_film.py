@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import scenes
+from spectra.observer import observer
 
 FLOOR = scenes.SceneObject(
     name="floor",
@@ -46,16 +47,38 @@ def singles(room, camera):
 
 @pytest.mark.parametrize("passes", [2, 3, 5, 8])
 def test_mean_and_standard_error_are_numpys(room, passes):
-    each = singles(room, AWAY)[:passes]
     film = expose(room, AWAY, range(passes), passes=passes)
     assert film.radiance().shape == (6, 8, 6)
-    np.testing.assert_allclose(film.radiance(), each.mean(axis=0), rtol=1e-12)
-    # Rounds of passes are the replicates: their means scatter by σ, the mean of n by σ/√n.
-    rounds = each.reshape(-1, film.turns, *each.shape[1:]).mean(axis=1)
-    assert len(rounds) >= 2
+    # Rounds of passes are the replicates: they scatter by σ, the mean of n of them by σ/√n.
+    starts = range(0, passes, film.turns)
+    each = [
+        expose(room, AWAY, range(start, start + film.turns), passes=passes) for start in starts
+    ]
+    rounds = np.array([one.radiance() for one in each])
+    assert len(rounds) == film.rounds >= 2
+    np.testing.assert_allclose(film.radiance(), rounds.mean(axis=0), rtol=1e-12)
     error = rounds.std(axis=0, ddof=1) / np.sqrt(len(rounds))
     np.testing.assert_allclose(film.standard_error(), error, rtol=1e-9, atol=1e-12 * error.max())
     assert film.standard_error().min() > 0.0
+
+
+@pytest.mark.parametrize("camera", [AWAY, THROUGH], ids=["away", "through"])
+def test_the_luminance_is_the_bands_and_its_noise_theirs(room, camera):
+    # Y = Σ L_b 683 ∫ ȳ dλ; the noise is that of the rounds' Y, in which bands vary together.
+    film = expose(room, camera, range(PASSES), passes=PASSES)
+    accuracy = film.accuracy()
+    eye = observer(room.scene.film.observer)
+    expected = eye.xyz(film.radiance(), film.edges_nm)[..., 1]
+    np.testing.assert_allclose(accuracy.luminance, expected, rtol=1e-12)
+    rounds = np.array(
+        [
+            eye.xyz(expose(room, camera, [i, i + 1], passes=PASSES).radiance(), film.edges_nm)
+            for i in range(0, PASSES, 2)
+        ]
+    )[..., 1]
+    assert accuracy.replicates == len(rounds) == 4
+    noise = rounds.std(axis=0, ddof=1) / 2.0
+    np.testing.assert_allclose(accuracy.noise, noise, rtol=1e-9, atol=1e-12 * noise.max())
 
 
 def test_one_pass_has_no_error(room):
@@ -72,15 +95,15 @@ def test_the_order_of_films_does_not_matter(room):
 
 
 def test_what_is_seen_through_glass_is_sampled_evenly(room):
-    # However passes share the bands behind glass, eight of them estimate what they do singly. The
-    # same photons serve both, so the picture's own error is more than they may differ by; means
-    # over the pixels, whose errors are independent enough, by less.
+    # However passes share the bands behind glass, eight of them estimate what they do singly, from
+    # the same photons but through other points of the pixels. Means over the pixels scatter by
+    # `spread`, and by up to √2 times that where each band has half as many looks.
     each = singles(room, THROUGH)
     film = expose(room, THROUGH, range(PASSES), passes=PASSES)
     assert each.mean() > 0.0
     spread = each.mean(axis=(1, 2)).std(axis=0, ddof=1) / np.sqrt(PASSES)
     off = np.abs(film.radiance().mean(axis=(0, 1)) - each.mean(axis=(0, 1, 2)))
-    assert np.all(off < 4.0 * spread)
+    assert np.all(off < 5.0 * np.sqrt(3.0) * spread)
     assert np.all(spread < 0.1 * each.mean(axis=(0, 1, 2)))
     # Each pixel and band has been looked at.
     assert np.all((film.radiance() > 0.0) == (each.sum(axis=0) > 0.0))
