@@ -9,12 +9,10 @@ never an error.
 
 import contextlib
 import functools
-import importlib
 import importlib.metadata
 import io
 import os
 import tempfile
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -22,6 +20,7 @@ from types import MappingProxyType
 import numpy as np
 
 from spectra.arrays import FloatArray, read_only
+from spectra.colour_science import import_colour_science
 
 __all__ = ["illuminant_tables", "observer_tables"]
 
@@ -119,17 +118,8 @@ def _write(path: Path, tables: Mapping[str, FloatArray]) -> None:
 
 
 def _ask_colour_science() -> dict[str, FloatArray]:
-    """Import colour-science, sample every table we know of, and leave NumPy as it was."""
-    # colour-science puts mock modules in the place of SciPy and Matplotlib when it finds none,
-    # and a mock's savefig() "succeeds"; these imports fail in plain words instead.
-    for real in ("scipy", "matplotlib"):
-        importlib.import_module(real)
-    print_options = np.get_printoptions()
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message='".*" related API features are not available')
-        import colour
-    np.set_printoptions(**print_options)  # Importing it changes them.
-
+    """Sample every table we know of."""
+    colour = import_colour_science()
     tables = {
         _ILLUMINANT + name: np.column_stack([spectrum.wavelengths, spectrum.values])
         for name, spectrum in colour.SDS_ILLUMINANTS.items()

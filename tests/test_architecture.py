@@ -20,6 +20,9 @@ HEAVY = ("warp", "colour", "scipy", "matplotlib", "OpenEXR")
 STRANGERS = ("sim.geometry", "sim.optics")
 """Rooms that never import each other; `sim.transport` joins them."""
 
+STUDY = ("sim.study", "sim.commands", "sim.cli")
+"""The top floor of `sim`, and those who may call it."""
+
 
 def module_name(path: Path) -> str:
     parts = path.relative_to(ROOT).with_suffix("").parts
@@ -99,6 +102,14 @@ def test_geometry_and_optics_do_not_know_each_other(one: str, other: str) -> Non
         if belongs_to(module, one)
     }
     assert not {module: names for module, names in acquainted.items() if names}
+
+
+def test_only_commands_know_the_study_which_knows_no_command() -> None:
+    for module in SOURCES:
+        strangers = STUDY[1:] if belongs_to(module, STUDY[0]) else STUDY[:1]
+        if not any(belongs_to(module, one) for one in STUDY[1:]):
+            known = [n for n in imports(module) if any(belongs_to(n, one) for one in strangers)]
+            assert not known, module
 
 
 @pytest.mark.parametrize("package", ["spectra", "scenes", "sim"])

@@ -1,0 +1,3 @@
+"""How accurate a result is: references without photons, and the measures that compare with them."""
+
+__all__: list[str] = []
