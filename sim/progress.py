@@ -20,6 +20,9 @@ class Progress:
         photons_done: Photons finished, over all passes.
         photons_total: Photons to trace, over all passes.
         seconds: Time since the rendering began [s].
+        error: Relative error of the luminance so far, `Accuracy.relative_error`; None until two
+            replicates are there.
+        is_open: Whether the run may end before all passes: its error or its time decides.
     """
 
     stage: str
@@ -28,6 +31,8 @@ class Progress:
     photons_done: int
     photons_total: int
     seconds: float
+    error: float | None = None
+    is_open: bool = False
 
 
 ProgressCallback: TypeAlias = Callable[[Progress], None]

@@ -39,7 +39,7 @@ def progress_display(stream: TextIO) -> Iterator[ProgressCallback]:
         def show(progress: Progress) -> None:
             bar.update(
                 task,
-                total=progress.photons_total,
+                total=None if progress.is_open else progress.photons_total,
                 completed=progress.photons_done,
                 description=progress_text(progress, *pace.after(progress)),
             )
@@ -92,6 +92,8 @@ class _Pace:
 
     def _seconds_left(self, progress: Progress, rate: float) -> float | None:
         """By the mean length of the passes so far; in the first pass by the photons to come."""
+        if progress.is_open:
+            return None
         assert self._first is not None and self._pass_began is not None
         finished = self._pass_began.pass_index - self._first.pass_index
         if finished > 0:
@@ -107,14 +109,17 @@ def progress_text(
     progress: Progress, photons_per_second: float | None, seconds_left: float | None
 ) -> str:
     """One report in words: ``pass 3/8, trace: 1.5M of 4M photons, 2.1M/s, 1 s left``."""
-    text = (
-        f"pass {progress.pass_index + 1}/{progress.passes}, {progress.stage}: "
-        f"{_rounded(progress.photons_done)} of {_rounded(progress.photons_total)} photons"
-    )
+    number, photons = f"{progress.pass_index + 1}", _rounded(progress.photons_done)
+    if not progress.is_open:
+        number += f"/{progress.passes}"
+        photons += f" of {_rounded(progress.photons_total)}"
+    text = f"pass {number}, {progress.stage}: {photons} photons"
     if photons_per_second is not None:
         text += f", {_rounded(photons_per_second)}/s"
     if seconds_left is not None:
         text += f", {_duration(seconds_left)} left"
+    if progress.error is not None:
+        text += f", error {progress.error:.2%}"
     return text
 
 

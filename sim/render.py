@@ -13,10 +13,9 @@ Reference:
 """
 
 import threading
-import time
-from collections.abc import Iterator
+from collections.abc import Generator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,63 +37,16 @@ from sim.photons.photon_map import PhotonMap, build_photon_map, make_collect, ma
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
-from sim.progress import Progress, ProgressCallback
+from sim.progress import ProgressCallback
 from sim.scene_data import CompiledScene, compile_scene
 from sim.settings import RenderSettings, ResolvedSettings
+from sim.stopping import StopRule
+from sim.stopwatch import Stopwatch
 
 __all__ = ["gather_radius", "render"]
 
-FOOTPRINTS_A_RADIUS = 3.0
+FOOTPRINTS_A_RADIUS = 2.0
 """The first pass gathers over a disc this many pixel widths in radius."""
-
-
-class _Watch:
-    """Adds up the seconds of each stage, which may overlap, and passes progress on."""
-
-    def __init__(self, settings: ResolvedSettings, tell: ProgressCallback | None) -> None:
-        self.start = time.perf_counter()
-        self.timings: dict[str, float] = {}
-        self.settings = settings
-        self.tell = tell
-        self.photons_done = 0
-        self.pass_index = 0
-        self.stage = ""
-        self.lock = threading.Lock()
-
-    @contextmanager
-    def timing(self, stage: str) -> Iterator[None]:
-        """Time a stage, under its name."""
-        with self.lock:
-            self.stage = stage
-        self.report()
-        start = time.perf_counter()
-        try:
-            yield
-        finally:
-            spent = time.perf_counter() - start
-            with self.lock:
-                self.timings[stage] = self.timings.get(stage, 0.0) + spent
-
-    def count_photons(self, photons: int) -> None:
-        """More photons are done."""
-        self.photons_done += photons
-        self.report()
-
-    def report(self, _done: int = 0) -> None:
-        """Tell the callback how far the run is, one thread at a time."""
-        if self.tell is None:
-            return
-        with self.lock:
-            self.tell(
-                Progress(
-                    stage=self.stage,
-                    pass_index=self.pass_index,
-                    passes=self.settings.passes,
-                    photons_done=self.photons_done,
-                    photons_total=self.settings.photons * self.settings.passes,
-                    seconds=time.perf_counter() - self.start,
-                )
-            )
 
 
 def render(
@@ -120,7 +72,7 @@ def render(
     """
     scene.require_renderable()
     plan = (settings or RenderSettings()).resolved(scene)
-    watch = _Watch(plan, progress)
+    watch = Stopwatch(plan, progress)
     with watch.timing("compile"):
         device = start_device(plan.device)
         compiled = compile_scene(scene, precision=plan.precision, device=device)
@@ -141,17 +93,23 @@ def render(
         radius = plan.radius or gather_radius(survey)
     studio = _Studio(compiled, lamps, receivers, camera, plan, radius, watch)
     books = []
-    for pass_index, (photon_map, pass_books) in enumerate(studio.photon_maps()):
-        books.append(pass_books)
-        with watch.timing("gather"):
-            studio.expose(film, photon_map, pass_index)
+    rule = StopRule(plan, watch)
+    with closing(studio.photon_maps()) as photon_maps:
+        for pass_index, (photon_map, pass_books) in enumerate(photon_maps):
+            books.append(pass_books)
+            with watch.timing("gather"):
+                studio.expose(film, photon_map, pass_index)
+            if film.passes % film.turns == 0 and rule.ends_after(film):
+                break
     return Picture(
         spectral_radiance=film.radiance(),
         standard_error=film.standard_error(),
+        accuracy=film.accuracy(),
         edges_nm=edges_nm,
         energy=EnergyBooks.mean(books),
         scene=scene,
-        settings=plan,
+        settings=plan.closed(film.passes),
+        stopping=rule.outcome,
         timings=watch.timings,
     )
 
@@ -194,9 +152,9 @@ class _Studio:
     camera: Any
     plan: ResolvedSettings
     radius: float
-    watch: _Watch
+    watch: Stopwatch
 
-    def photon_maps(self) -> Iterator[tuple[PhotonMap, EnergyBooks]]:
+    def photon_maps(self) -> Generator[tuple[PhotonMap, EnergyBooks], None, None]:
         """The photon map of each pass, in order, and its energy books.
 
         The next map is made while the caller gathers from this one: building a grid is serial,

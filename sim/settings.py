@@ -19,12 +19,31 @@ from sim.errors import SettingsError
 if TYPE_CHECKING:
     from scenes import Scene
 
-__all__ = ["DEFAULTS", "DirectLight", "Precision", "RenderSettings", "ResolvedSettings"]
+__all__ = [
+    "DEFAULTS",
+    "PRESETS",
+    "DirectLight",
+    "Precision",
+    "Preset",
+    "RenderSettings",
+    "ResolvedSettings",
+]
 
 Precision: TypeAlias = Literal["float32", "float64"]
 DirectLight: TypeAlias = Literal["lamps", "photons"]
+Preset: TypeAlias = Literal["draft", "standard", "reference"]
+
+PRESETS: Final[dict[str, dict[str, float]]] = {
+    "draft": {"photons": 0.25, "passes": 0.5},
+    "standard": {},
+    "reference": {"photons": 4.0, "passes": 8.0},
+}
+"""Photons and passes of each preset, in terms of the scene's own or the program's defaults."""
 
 DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256}
+
+OPEN_PASSES: Final = 4096
+"""Passes at most where the error or the time is to decide, and no number is given."""
 
 # The smallest and largest value of each whole-number setting. Totals (photons times passes) stay
 # within int64; a pass's deposits are counted in int32, with room for several a photon.
@@ -35,6 +54,7 @@ _WHOLE_NUMBERS: Final = {
     "seed": (0, 2**63 - 1),
     "threads": (1, 1024),
 }
+_POSITIVE_NUMBERS: Final = {"radius": math.inf, "target_error": 1.0, "time_budget": math.inf}
 _PRECISIONS: Final = ("float32", "float64")
 _DIRECT_LIGHTS: Final = ("lamps", "photons")
 _DEVICE: Final = re.compile(r"cpu|cuda:\d+")
@@ -46,7 +66,15 @@ class RenderSettings:
 
     Attributes:
         photons: Photons emitted in each pass.
-        passes: Independent passes that are averaged; two or more give a standard error.
+        passes: Independent passes that are averaged; two or more give a standard error. With a
+            target or a time budget, passes at most.
+        preset: "draft", "standard" or "reference": how many photons and passes, in terms of the
+            scene's own or the program's defaults; what is given by number wins.
+        target_error: Relative error at which to stop, 0.01 for 1 %: the root mean square over the
+            pixels of the luminance's error, noise and bias as `Accuracy` estimates them, each
+            relative to the pixel's luminance plus the mean luminance.
+        time_budget: Time for the rendering [s]; no round of passes is begun that would exceed it,
+            but for the first two.
         radius: Gather radius of the first pass [m]; None: from the pixel's footprint.
         alpha: How slowly the gather radius shrinks, r²ᵢ₊₁ = r²ᵢ (i + α)/(i + 1) (Knaus and
             Zwicker 2011); 1 keeps it.
@@ -64,6 +92,9 @@ class RenderSettings:
 
     photons: int | None = None
     passes: int | None = None
+    preset: Preset | None = None
+    target_error: float | None = None
+    time_budget: float | None = None
     radius: float | None = None
     alpha: float = 2 / 3
     direct_light: DirectLight = "lamps"
@@ -78,8 +109,13 @@ class RenderSettings:
             value = getattr(self, field)
             if value is not None or field == "seed":
                 self._replace(field, _whole_number(field, value, lowest, highest))
-        if self.radius is not None:
-            self._replace("radius", _positive_number("radius", self.radius, math.inf))
+        for field, highest_number in _POSITIVE_NUMBERS.items():
+            value = getattr(self, field)
+            if value is not None:
+                self._replace(field, _positive_number(field, value, highest_number))
+        if self.preset is not None and self.preset not in PRESETS:
+            names = ", ".join(repr(name) for name in PRESETS)
+            raise SettingsError("preset", self.preset, names)
         self._replace("alpha", _positive_number("alpha", self.alpha, 1.0))
         if not _DEVICE.fullmatch(str(self.device)):
             raise SettingsError("device", self.device, "'cpu', 'cuda:0', 'cuda:1', …")
@@ -107,11 +143,23 @@ class RenderSettings:
                 values[field] = getattr(scene.render, field)
             if values[field] is None:
                 values[field] = DEFAULTS.get(field)
+        for field, factor in PRESETS.get(self.preset or "standard", {}).items():
+            if getattr(self, field) is None:
+                values[field] = max(1, round(factor * values[field]))
+        if self.is_open:
+            # Whole rounds of two, so that the passes there were render the same picture again.
+            passes = OPEN_PASSES if self.passes is None else self.passes
+            values["passes"] = max(4, passes + passes % 2)
         if values["threads"] is None:
             values["threads"] = _available_cores()
         if values["precision"] is None:
             values["precision"] = "float64" if self.device == "cpu" else "float32"
         return ResolvedSettings(**values)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the error or the time decides how many passes there are."""
+        return self.target_error is not None or self.time_budget is not None
 
     def reproducing(self) -> dict[str, Any]:
         """The settings that decide the picture, ready for JSON: all but the number of threads."""
@@ -129,6 +177,12 @@ class ResolvedSettings(RenderSettings):
     max_interactions: int
     threads: int
     precision: Precision
+
+    def closed(self, passes: int) -> ResolvedSettings:
+        """The settings that render the same picture again: `passes` in all, and no other end."""
+        return dataclasses.replace(
+            self, passes=passes, preset=None, target_error=None, time_budget=None
+        )
 
 
 def _whole_number(field: str, value: SupportsIndex, lowest: int, highest: int) -> int:

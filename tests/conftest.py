@@ -64,9 +64,11 @@ def small_scene() -> Scene:
 @pytest.fixture
 def synthetic_picture(small_scene: Scene) -> Picture:
     """A picture of made-up numbers, different in every pixel and band, not all of them in gamut."""
+    from sim.image.accuracy import Accuracy
     from sim.image.picture import Picture
     from sim.photons.energy import EnergyBooks
     from sim.settings import RenderSettings
+    from spectra.observer import observer
 
     film = small_scene.film
     shape = (film.height, film.width, film.bands)
@@ -74,9 +76,14 @@ def synthetic_picture(small_scene: Scene) -> Picture:
     radiance[0, 0] = [0.0, 2e-3, 0.0, 0.0]  # One band alone: outside the sRGB gamut.
     radiance[0, 1] = 0.0
     energy = EnergyBooks(emitted=1.0, deposited=0.7, absorbed=0.1, escaped=0.15, culled=0.05)
+    luminance = observer(film.observer).xyz(radiance, film.edges_nm)[..., 1]
     return Picture(
         spectral_radiance=radiance,
         standard_error=0.1 * radiance,
+        accuracy=Accuracy(
+            luminance=luminance, noise=0.1 * luminance, bias=0.05 * luminance,
+            bias_noise=0.03 * luminance, replicates=4,
+        ),
         edges_nm=film.edges_nm,
         energy=energy,
         scene=small_scene,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-__all__ = ["count", "exr_file", "figure_file", "png_file"]
+__all__ = ["count", "duration", "exr_file", "figure_file", "fraction", "png_file"]
 
 
 def count(text: str) -> int:
@@ -20,6 +20,22 @@ def count(text: str) -> int:
 
 
 count.__name__ = "whole number"  # What argparse calls it: "invalid whole number value: 'many'".
+
+
+def fraction(text: str) -> float:
+    """A part of one, which may be written ``0.01`` or ``1%``."""
+    return float(text[:-1]) / 100.0 if text.endswith("%") else float(text)
+
+
+fraction.__name__ = "fraction or percentage"
+
+
+def duration(text: str) -> float:
+    """Seconds, which may be written ``90``, ``90s``, ``1.5min`` or ``0.5h``."""
+    for unit, seconds in (("min", 60.0), ("s", 1.0), ("h", 3600.0)):
+        if text.endswith(unit):
+            return float(text.removesuffix(unit)) * seconds
+    return float(text)
 
 
 def exr_file(path: str) -> Path:

@@ -57,7 +57,8 @@ def _print_origin(image: SpectralImage) -> None:
     _print_row("Nephroid", image.attribute("version"))
     _print_row("scene", image.attribute("scene_name"))
     _print_row("observer", image.attribute("observer"))
-    for heading, unit in (("settings", ""), ("energy", "W")):
+    _print_row("ended by", image.attribute("stopping"))
+    for heading, unit in (("settings", ""), ("accuracy", ""), ("energy", "W")):
         text = image.attribute(heading)
         if text is not None:
             print(f"  {heading}")

@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sim.commands.arguments import count, exr_file, png_file
+from sim.commands.arguments import count, duration, exr_file, fraction, png_file
 
 if TYPE_CHECKING:
     from scenes import Scene
@@ -38,6 +38,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--photons", type=count, metavar="N", help="photons in each pass")
     parser.add_argument("--passes", type=count, metavar="N",
                         help="independent passes, averaged; two or more give a standard error")
+    parser.add_argument("--preset", choices=("draft", "standard", "reference"),
+                        help="photons and passes by name: draft for a look, reference to compare "
+                             "with (default: standard)")
+    parser.add_argument("--target-error", type=fraction, metavar="P%",
+                        help="stop once the picture is as good: root mean square over the pixels "
+                             "of the luminance's estimated error, noise and bias, each relative "
+                             "to the pixel's luminance plus the picture's mean; --passes is then "
+                             "a limit")
+    parser.add_argument("--time-budget", type=duration, metavar="60s",
+                        help="begin no passes that would end later than this after the start; "
+                             "writing the files comes on top")
+    parser.add_argument("--error-map", type=png_file, metavar="OUT.png",
+                        help="also draw each pixel's relative error")
     parser.add_argument("--radius", type=float, metavar="M",
                         help="gather radius of the first pass [m] (default: about one pixel)")
     parser.add_argument("--precision", choices=("float32", "float64"),
@@ -78,12 +91,17 @@ def run(arguments: argparse.Namespace) -> None:
     png_path = arguments.png or exr_path.with_suffix(".png")
     check_writable(exr_path)
     check_writable(png_path)
+    if arguments.error_map is not None:
+        check_writable(arguments.error_map)
     picture, exr, png = _rendered(scene, settings, arguments.exposure)
     write_whole(exr_path, exr)
     write_whole(png_path, png)
+    if arguments.error_map is not None:
+        _draw_error_map(picture, arguments.error_map)
     seconds = time.perf_counter() - start
     height, width, bands = picture.spectral_radiance.shape
     print(f"{exr_path} and {png_path}: {width} × {height}, {bands} bands, {seconds:.1f} s")
+    print(_accuracy_text(picture))
     if arguments.verbose:
         _print_books(picture)
         _print_timings(picture.timings, seconds)
@@ -108,6 +126,24 @@ def _rendered(
 
     with progress_display(sys.stderr) as progress:
         return run_interruptibly(functools.partial(work, progress))
+
+
+def _draw_error_map(picture: Picture, path: Path) -> None:
+    from sim.error_map import plot_error_map
+    from sim.figure_file import save_figure
+
+    save_figure(plot_error_map(picture.accuracy), path)
+
+
+def _accuracy_text(picture: Picture) -> str:
+    """The achieved error in words, and why there were no more passes."""
+    accuracy, passes = picture.accuracy, picture.settings.passes
+    if math.isnan(accuracy.relative_error):
+        return f"error: not known from {passes} pass{'es' if passes > 1 else ''}"
+    return (
+        f"error: {accuracy.relative_error:.2%} (noise {accuracy.relative_noise:.2%}, "
+        f"bias {accuracy.relative_bias:.2%}) after {passes} passes: {picture.stopping}"
+    )
 
 
 def _print_books(picture: Picture) -> None:

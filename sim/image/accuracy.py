@@ -43,18 +43,32 @@ class Accuracy:
 
     @property
     def relative_noise(self) -> float:
-        """Root mean square of the noise over that of the luminance; NaN if it is not known."""
-        return self._relative(_mean_square(self.noise))
+        """Root mean square over the pixels of noise / (luminance + the picture's mean luminance).
+
+        The mean keeps dark pixels from counting for more than they show, and a focus that burns
+        out counts for no more than its pixels. NaN from a single replicate.
+        """
+        return self._relative(self.noise**2)
 
     @property
     def relative_bias(self) -> float:
-        """Root mean square of the bias over that of the luminance, its own noise taken out."""
-        return self._relative(_mean_square(self.bias) - _mean_square(self.bias_noise))
+        """The same of the bias, its own noise taken out."""
+        return self._relative(self.bias**2 - self.bias_noise**2)
 
     @property
     def relative_error(self) -> float:
-        """Noise and bias together: the relative L² error of the luminance, as estimated."""
+        """Noise and bias together, as root mean square."""
         return math.hypot(self.relative_noise, self.relative_bias)
+
+    def summary(self) -> dict[str, float | int | None]:
+        """The picture's figures, ready for JSON; None where there is but one replicate."""
+        figures = {
+            "relative_error": self.relative_error,
+            "relative_noise": self.relative_noise,
+            "relative_bias": self.relative_bias,
+        }
+        known = {name: None if math.isnan(one) else one for name, one in figures.items()}
+        return {**known, "replicates": self.replicates}
 
     def half_width(self, level: float = 0.95) -> FloatArray:
         """Half of the interval that holds the true luminance with probability `level`.
@@ -72,12 +86,8 @@ class Accuracy:
         half: FloatArray = np.sqrt((quantile * self.noise) ** 2 + bias2)
         return half
 
-    def _relative(self, mean_square: float) -> float:
-        scale = _mean_square(self.luminance)
-        if scale == 0.0:
-            return math.nan if math.isnan(mean_square) else 0.0
-        return math.sqrt(max(mean_square, 0.0) / scale)
-
-
-def _mean_square(values: FloatArray) -> float:
-    return float(np.mean(np.square(values)))
+    def _relative(self, squares: FloatArray) -> float:
+        mean = float(np.mean(self.luminance))
+        if mean == 0.0:
+            return math.nan if self.replicates < 2 else 0.0
+        return math.sqrt(max(float(np.mean(squares / (self.luminance + mean) ** 2)), 0.0))

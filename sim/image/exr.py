@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.image.exr_layout import (
+    ACCURACY_CHANNELS,
     ATTRIBUTE_PREFIX,
     BAND_MEANS,
     EMISSIVE_UNITS,
@@ -74,6 +75,9 @@ def _channels(picture: Picture) -> dict[str, NDArray[np.float32]]:
         if has_error:
             error = _plane(picture.standard_error[..., band])
             channels[error_channel(wavelength_nm)] = _rounded_to_8_bits(error)
+    if has_error:
+        for name, channel in ACCURACY_CHANNELS.items():
+            channels[channel] = _rounded_to_8_bits(_plane(getattr(picture.accuracy, name)))
     return channels
 
 
@@ -97,6 +101,8 @@ def _reproducing_attributes(picture: Picture) -> dict[str, str]:
         "scene_name": picture.scene.source_name,
         "settings": json.dumps(picture.settings.reproducing()),
         "seed": str(picture.settings.seed),  # As text: OpenEXR's integers have 32 bits.
+        "accuracy": json.dumps(picture.accuracy.summary()),
+        "stopping": picture.stopping,
         "energy": json.dumps(dataclasses.asdict(picture.energy)),
         "bands": BAND_MEANS,
         "band_edges_nm": json.dumps(picture.edges_nm.tolist()),

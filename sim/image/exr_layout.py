@@ -2,8 +2,9 @@
 
 Fichet, Pacanowski and Wilkie (2021), "An OpenEXR Layout for Spectral Images", Journal of
 Computer Graphics Techniques 10(3): emissive radiance is in channels ``S0.<wavelength><unit>``
-with a decimal comma. Ours adds, in a layer that spectral readers skip, the standard error of
-each band, and string attributes ``nephroid_…`` with all that it takes to render the file again.
+with a decimal comma. Ours adds, in layers that spectral readers skip, the standard error of each
+band and the luminance's noise and bias, and string attributes ``nephroid_…`` with all that it
+takes to render the file again.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Final
 from spectra.units import SPEED_OF_LIGHT_M_S
 
 __all__ = [
+    "ACCURACY_CHANNELS",
     "ATTRIBUTE_PREFIX",
     "BAND_MEANS",
     "EMISSIVE_UNITS",
@@ -28,6 +30,8 @@ LAYOUT_VERSION: Final = "1.0"
 EMISSIVE_UNITS: Final = "W.m^-2.sr^-1"
 BAND_MEANS: Final = "band means, W m^-2 sr^-1 nm^-1"
 ATTRIBUTE_PREFIX: Final = "nephroid_"
+ACCURACY_CHANNELS: Final = {"noise": "luminance.noise", "bias": "luminance.bias"}
+"""Channels of the luminance's standard error and of its estimated bias [cd/m²]."""
 
 _ERROR_LAYER: Final = "standardError."
 # The units that the layout's reference reader knows.

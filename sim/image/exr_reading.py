@@ -11,7 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import FileFormatError
-from sim.image.exr_layout import ATTRIBUTE_PREFIX, error_wavelength_nm, radiance_wavelength_nm
+from sim.image.exr_layout import (
+    ACCURACY_CHANNELS,
+    ATTRIBUTE_PREFIX,
+    error_wavelength_nm,
+    radiance_wavelength_nm,
+)
 from sim.native_output import silenced_native_output
 
 __all__ = ["SpectralImage", "read_exr"]
@@ -29,6 +34,8 @@ class SpectralImage:
         spectral_radiance: Shape (height, width, bands), row 0 on top, in the file's unit.
         standard_error: Same shape and unit; None if the file has none.
         linear_rgb: Shape (height, width, 3); None if the file has none.
+        luminance_noise: Standard error of the luminance [cd/m²], shape (height, width); or None.
+        luminance_bias: What the gather's blur adds to the luminance, as estimated; or None.
         attributes: The file's attributes that are text or numbers, by name.
         other_channels: Names of the channels that are none of the above.
     """
@@ -38,6 +45,8 @@ class SpectralImage:
     spectral_radiance: NDArray[np.float32]
     standard_error: NDArray[np.float32] | None
     linear_rgb: NDArray[np.float32] | None
+    luminance_noise: NDArray[np.float32] | None
+    luminance_bias: NDArray[np.float32] | None
     attributes: dict[str, str | float | int]
     other_channels: tuple[str, ...]
 
@@ -68,7 +77,7 @@ def read_exr(path: str | os.PathLike[str]) -> SpectralImage:
     if not radiance:
         names = ", ".join(sorted(pixels)) or "none"
         raise FileFormatError(path, f"it has no spectral radiance; its channels: {names}")
-    known = {*radiance.values(), *error.values()}
+    known = {*radiance.values(), *error.values(), *ACCURACY_CHANNELS.values()}
     has_rgb = {"R", "G", "B"} <= pixels.keys()
     if has_rgb:
         known |= {"R", "G", "B"}
@@ -78,6 +87,8 @@ def read_exr(path: str | os.PathLike[str]) -> SpectralImage:
         spectral_radiance=_stack(pixels, radiance.values()),
         standard_error=_stack(pixels, error.values()) if error.keys() == radiance.keys() else None,
         linear_rgb=_stack(pixels, "RGB") if has_rgb else None,
+        luminance_noise=pixels.get(ACCURACY_CHANNELS["noise"]),
+        luminance_bias=pixels.get(ACCURACY_CHANNELS["bias"]),
         attributes={k: v for k, v in header.items() if isinstance(v, str | float | int)},
         other_channels=tuple(sorted(pixels.keys() - known)),
     )

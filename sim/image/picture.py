@@ -20,8 +20,9 @@ from spectra.units import LUMINOUS_EFFICACY_LM_W
 
 if TYPE_CHECKING:
     from scenes import Scene
+    from sim.image.accuracy import Accuracy
     from sim.photons.energy import EnergyBooks
-    from sim.settings import RenderSettings
+    from sim.settings import ResolvedSettings
 
 __all__ = ["Picture"]
 
@@ -36,18 +37,22 @@ class Picture:
         standard_error: One standard deviation of each estimate, same unit and shape; NaN where
             there is none (a single pass).
         edges_nm: Band edges [nm], shape (bands + 1,), increasing.
+        accuracy: How far the luminance may be off, noise and bias apart.
         energy: Where the emitted flux went [W].
         scene: The scene that was rendered.
-        settings: The settings that it was rendered with, resolved.
+        settings: The settings that render it again, resolved: with the passes that there were.
+        stopping: Why there were no more: "all passes", "target error" or "time budget".
         timings: Seconds that each stage took.
     """
 
     spectral_radiance: NDArray[np.float64]
     standard_error: NDArray[np.float64]
+    accuracy: Accuracy
     edges_nm: NDArray[np.float64]
     energy: EnergyBooks
     scene: Scene
-    settings: RenderSettings
+    settings: ResolvedSettings
+    stopping: str = "all passes"
     timings: dict[str, float] = field(default_factory=dict)
 
     @property

@@ -9,7 +9,7 @@ import pytest
 
 import scenes
 from sim.errors import SettingsError
-from sim.settings import DEFAULTS, RenderSettings
+from sim.settings import DEFAULTS, OPEN_PASSES, PRESETS, RenderSettings
 
 
 @pytest.mark.parametrize(
@@ -19,6 +19,10 @@ from sim.settings import DEFAULTS, RenderSettings
         *[("passes", value) for value in (0, -3, 2.0, math.nan)],
         *[("radius", value) for value in (0.0, -1.0, math.nan, math.inf, "0.1", True)],
         *[("alpha", value) for value in (0.0, 1.01, math.nan, -0.5)],
+        *[("preset", value) for value in ("best", "", 1)],
+        *[("target_error", value) for value in (0.0, -0.01, 1.5, math.nan, "1%")],
+        *[("time_budget", value) for value in (0.0, -1.0, math.inf, math.nan, "60s")],
+        *[("direct_light", value) for value in ("rays", None)],
         *[("max_interactions", value) for value in (0, 2**20)],
         *[("seed", value) for value in (-1, 2**63, None)],
         *[("threads", value) for value in (0, 4096)],
@@ -56,7 +60,7 @@ def test_open_settings_come_from_the_scene_then_from_the_defaults(small_scene):
     assert resolved.threads >= 1
     assert isinstance(resolved, RenderSettings)
     left_open = {name for name, value in dataclasses.asdict(resolved).items() if value is None}
-    assert left_open == {"radius"}
+    assert left_open == {"radius", "preset", "target_error", "time_budget"}
 
 
 def test_a_radius_in_the_scene_is_in_metres():
@@ -86,3 +90,25 @@ def test_threads_do_not_count_as_what_reproduces_a_picture(small_scene):
     one, two = (RenderSettings(threads=n).resolved(small_scene) for n in (1, 2))
     assert one.reproducing() == two.reproducing()
     assert RenderSettings(**one.reproducing(), threads=1).resolved(small_scene) == one
+
+
+def test_presets_are_in_terms_of_the_scenes_own_numbers(small_scene):
+    standard, reference = (
+        RenderSettings(preset=name).resolved(small_scene) for name in ("standard", "reference")
+    )
+    assert (standard.photons, standard.passes) == (2000, 2)
+    factors = PRESETS["reference"]
+    assert reference.photons == 2000 * factors["photons"]
+    assert reference.passes == 2 * factors["passes"]
+    # What is given by number wins.
+    assert RenderSettings(preset="reference", photons=7).resolved(small_scene).photons == 7
+
+
+@pytest.mark.parametrize(("passes", "most"), [(None, OPEN_PASSES), (7, 8), (1, 4), (12, 12)])
+def test_an_open_end_takes_whole_rounds_of_two(small_scene, passes, most):
+    # So that the passes there were make the same rounds when they are given by number.
+    open_end = RenderSettings(passes=passes, target_error=0.1).resolved(small_scene)
+    assert open_end.is_open
+    assert open_end.passes == most
+    closed = open_end.closed(6)
+    assert (closed.passes, closed.is_open) == (6, False)

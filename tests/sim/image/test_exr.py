@@ -83,7 +83,8 @@ def test_openexr_itself_finds_every_band(exr, synthetic_picture):
     pixels, _ = raw_channels(exr)
     wavelengths_nm = synthetic_picture.wavelengths_nm
     assert pixels.keys() == {
-        *"RGB", *map(radiance_channel, wavelengths_nm), *map(error_channel, wavelengths_nm)
+        *"RGB", *map(radiance_channel, wavelengths_nm), *map(error_channel, wavelengths_nm),
+        "luminance.noise", "luminance.bias",
     }  # fmt: skip
     for band, wavelength_nm in enumerate(wavelengths_nm):
         stored = pixels[radiance_channel(wavelength_nm)]
@@ -145,6 +146,11 @@ def test_read_exr_gives_the_picture_back(exr, synthetic_picture):
     expected = synthetic_picture.standard_error
     np.testing.assert_allclose(image.standard_error, expected, rtol=ERROR_BAR_ROUNDING)
     assert image.linear_rgb.shape == (8, 12, 3)
+    accuracy = synthetic_picture.accuracy
+    np.testing.assert_allclose(image.luminance_noise, accuracy.noise, rtol=ERROR_BAR_ROUNDING)
+    np.testing.assert_allclose(image.luminance_bias, accuracy.bias, rtol=ERROR_BAR_ROUNDING)
+    assert json.loads(image.attribute("accuracy")) == accuracy.summary()
+    assert image.attribute("stopping") == "all passes"
     assert image.other_channels == ()
 
 
