@@ -82,7 +82,7 @@ def synthetic_picture(small_scene: Scene) -> Picture:
         standard_error=0.1 * radiance,
         accuracy=Accuracy(
             luminance=luminance, noise=0.1 * luminance, bias=0.05 * luminance,
-            bias_noise=0.03 * luminance, replicates=4,
+            bias_noise=0.03 * luminance, corrected_noise=0.11 * luminance, replicates=4,
         ),
         edges_nm=film.edges_nm,
         energy=energy,

@@ -5,6 +5,9 @@ blurs: what a kernel of half its area sees otherwise tells by how much, to secon
 radius. That estimate is noisy itself, more than the picture is, and its noise is known the same
 way; whatever is made of its square has that noise taken out.
 
+Intervals are those of the luminance less its bias, whose scatter is tallied as well: it is noisier
+than the picture, but the truth lies inside as often as stated, blurred or not.
+
 References:
     Student (1908), Biometrika 6, 1: the interval of a mean from few replicates.
     Schucany & Sommers (1977), JASA 72, 420: a kernel's bias from a second kernel.
@@ -32,6 +35,7 @@ class Accuracy:
         noise: One standard deviation of it; NaN from a single replicate.
         bias: What the gather's blur has added, estimated.
         bias_noise: One standard deviation of that estimate.
+        corrected_noise: One standard deviation of the luminance less its estimated bias.
         replicates: Independent estimates that were averaged.
     """
 
@@ -39,6 +43,7 @@ class Accuracy:
     noise: FloatArray
     bias: FloatArray
     bias_noise: FloatArray
+    corrected_noise: FloatArray
     replicates: int
 
     @property
@@ -70,11 +75,12 @@ class Accuracy:
         known = {name: None if math.isnan(one) else one for name, one in figures.items()}
         return {**known, "replicates": self.replicates}
 
-    def half_width(self, level: float = 0.95) -> FloatArray:
-        """Half of the interval that holds the true luminance with probability `level`.
+    def interval(self, level: float = 0.95) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest luminance between which the truth lies with probability `level`.
 
-        Student's t for the replicates there are, times the noise, and the bias so far as it is
-        more than its own noise, added in squares. NaN from a single replicate.
+        Its middle is the luminance less its estimated bias, a jackknife in the radius, and its
+        half width that one's noise, times Student's t for the replicates there are. NaN from a
+        single replicate.
 
         Args:
             level: Probability, between 0 and 1.
@@ -82,9 +88,8 @@ class Accuracy:
         from scipy.stats import t
 
         quantile = float(t.ppf(0.5 + 0.5 * level, max(self.replicates - 1, 1)))
-        bias2 = np.maximum(self.bias**2 - self.bias_noise**2, 0.0)
-        half: FloatArray = np.sqrt((quantile * self.noise) ** 2 + bias2)
-        return half
+        middle, half = self.luminance - self.bias, quantile * self.corrected_noise
+        return middle - half, middle + half
 
     def _relative(self, squares: FloatArray) -> float:
         mean = float(np.mean(self.luminance))

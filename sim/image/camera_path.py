@@ -53,7 +53,7 @@ def make_film_struct() -> Any:
     `sample` holds the sample that the passes of one round of turns add up to, as
     `sim.image.gather` fills it; `turn` of `turns` is the pass within its `round`, `rounds_before`
     counts the complete ones. `tally` holds of each pixel the running mean and squared deviations of
-    its luminance, and of the part of it that is the gather's bias, in this order.
+    its luminance, of the part of it that is the gather's bias, and of the rest, in this order.
     """
 
     @wp.struct
@@ -233,5 +233,6 @@ def make_render_camera(precision: str, features: Features) -> Any:
             bias = film.sample[pixel, bands + lights.receivers.lamps]
             add_value(film.tally, film.tally, pixel, 0, 1, luminance, film.rounds_before)
             add_value(film.tally, film.tally, pixel, 2, 3, bias, film.rounds_before)
+            add_value(film.tally, film.tally, pixel, 4, 5, luminance - bias, film.rounds_before)
 
     return render_camera

@@ -65,12 +65,13 @@ class Film:
 
     def accuracy(self) -> Accuracy:
         """How sure the luminance of each pixel is, noise and bias apart."""
-        tally = self.data.tally.numpy().reshape(*self.shape[:2], 4)
+        tally = self.data.tally.numpy().reshape(*self.shape[:2], 6)
         return Accuracy(
             luminance=tally[..., 0].copy(),
             noise=self._error_of(tally[..., 1]),
             bias=tally[..., 2].copy(),
             bias_noise=self._error_of(tally[..., 3]),
+            corrected_noise=self._error_of(tally[..., 5]),
             replicates=self.rounds,
         )
 
@@ -100,7 +101,7 @@ def create_film(
     data.sample = wp.zeros((size[0], size[1] + lamps + 1), dtype=wp.float64, device=device)
     data.mean = wp.zeros(size, dtype=wp.float64, device=device)
     data.squares = wp.zeros(size, dtype=wp.float64, device=device)
-    data.tally = wp.zeros((size[0], 4), dtype=wp.float64, device=device)
+    data.tally = wp.zeros((size[0], 6), dtype=wp.float64, device=device)
     return Film(height, width, np.asarray(edges_nm, dtype=np.float64), data, turns_of(passes))
 
 

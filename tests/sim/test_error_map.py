@@ -14,7 +14,8 @@ def test_each_pixel_is_its_relative_error(tmp_path):
     bias = np.array([[0.05, 0.2, 0.0], [0.0, 0.0, 0.0]])
     bias_noise = np.array([[0.03, 0.0, 0.0], [0.1, 0.0, 0.0]])
     accuracy = Accuracy(
-        luminance=luminance, noise=noise, bias=bias, bias_noise=bias_noise, replicates=4
+        luminance=luminance, noise=noise, bias=bias, bias_noise=bias_noise,
+        corrected_noise=noise, replicates=4,
     )
     figure = plot_error_map(accuracy)
     (image,) = figure.axes[0].get_images()

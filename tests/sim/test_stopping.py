@@ -28,7 +28,8 @@ class FilmOf:
         # Relative to luminance plus mean: twice the luminance.
         noise = 2.0 * one / self.rounds
         return Accuracy(
-            luminance=one, noise=noise, bias=0 * one, bias_noise=0 * one, replicates=self.rounds
+            luminance=one, noise=noise, bias=0 * one, bias_noise=0 * one, corrected_noise=noise,
+            replicates=self.rounds,
         )
 
 

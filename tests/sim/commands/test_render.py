@@ -131,3 +131,40 @@ def test_ctrl_c_stops_a_running_render_and_leaves_no_file(folder, tmp_path):
     assert lines[-1] == "nephroid: stopped\n"
     assert not any("Traceback" in line for line in lines)
     assert os.listdir(tmp_path) == []
+
+
+def test_the_achieved_error_is_told_and_drawn(folder, small_scene, capsys):
+    arguments = ["render", str(folder / "bench.toml"), "-o", str(folder / "open.exr")]
+    asked = ["--photons", "1500", "--target-error", "90%", "--time-budget", "10min"]
+    assert main([*arguments, *asked, "--error-map", str(folder / "map.png")]) == 0
+    told = capsys.readouterr().out
+    assert "after 4 passes: target error" in told
+    assert (folder / "map.png").read_bytes().startswith(b"\x89PNG")
+    image = sim.read_exr(folder / "open.exr")
+    stored = json.loads(image.attribute("accuracy"))
+    assert f"error: {stored['relative_error']:.2%} (noise" in told
+    assert image.attribute("stopping") == "target error"
+    # The settings in the file render the same picture again.
+    assert json.loads(image.attribute("settings"))["passes"] == 4
+    for name in ("open.exr", "open.png", "map.png"):
+        (folder / name).unlink()
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "allowed"),
+    [
+        ("--target-error", "0%", "above 0"), ("--target-error", "200%", "at most 1"),
+        ("--time-budget", "-5s", "above 0"), ("--time-budget", "soon", "invalid duration"),
+        ("--preset", "best", "choose from"),
+    ],
+)
+def test_bad_ends_are_refused(folder, option, value, allowed, capsys):
+    try:
+        status = main(["render", str(folder / "bench.toml"), f"{option}={value}"])
+    except SystemExit as ended:
+        status = ended.code
+    assert status == 2
+    told = capsys.readouterr().err
+    assert allowed in told
+    assert "Traceback" not in told
+    assert sorted(os.listdir(folder)) == ["bench.exr", "bench.png", "bench.toml"]
