@@ -1,0 +1,117 @@
+"""How the cost of a picture grows with photons, pixels and bands.
+
+``python tests/benchmarks/scaling.py [-o PLOT.svg]`` renders the gallery's lens, one thing varied
+at a time, and prints the CPU seconds of one pass (the difference of two runs, so that compiling
+and starting cancel out) and the exponent of each law, with its 95 % interval. Asked for: at most
+linear in photons and in pixels, less than linear in bands.
+"""
+
+import argparse
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy import stats
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1]))
+
+import scenes  # noqa: E402
+import sim  # noqa: E402
+
+SCENE = "lens"
+PHOTONS, WIDTH, BANDS = 60_000, 320, 31
+REPETITIONS = 3
+
+
+@dataclass(frozen=True)
+class Law:
+    """Cost against one size."""
+
+    name: str
+    sizes: tuple[int, ...]
+    seconds: tuple[float, ...]
+
+    def exponent(self) -> tuple[float, float]:
+        """Slope of log cost over log size, and half its 95 % interval."""
+        fit = stats.linregress(np.log(self.sizes), np.log(self.seconds))
+        return fit.slope, float(stats.t.ppf(0.975, len(self.sizes) - 2) * fit.stderr)
+
+
+def make_scene(width: int, bands: int) -> scenes.Scene:
+    """The gallery's scene at another size: 400 to 700 nm in `bands` bands."""
+    scene = scenes.load(SCENE)
+    step = 300.0 / bands
+    film = scene.film.model_copy(
+        update={
+            "width": width, "height": round(width * scene.film.height / scene.film.width),
+            "first_nm": 400.0 + 0.5 * step, "last_nm": 700.0 - 0.5 * step, "bands": bands,
+        }
+    )
+    return scene.model_copy(update={"film": film})
+
+
+def pass_seconds(*, photons: int = PHOTONS, width: int = WIDTH, bands: int = BANDS) -> float:
+    """CPU seconds of one pass: six less two, over four; the least of some repetitions."""
+    scene = make_scene(width, bands)
+    found = []
+    for _ in range(REPETITIONS):
+        spent = []
+        for passes in (2, 6):
+            start = time.process_time()
+            sim.render(scene, sim.RenderSettings(photons=photons, passes=passes))
+            spent.append(time.process_time() - start)
+        found.append((spent[1] - spent[0]) / 4.0)
+    return min(found)
+
+
+def measure() -> list[Law]:
+    """Every law."""
+    photons = tuple(PHOTONS * 2**k for k in range(5))
+    widths = (160, 240, 320, 480, 640)
+    bands = (8, 16, 31, 62, 124)
+    pixels = tuple(width * make_scene(width, BANDS).film.height for width in widths)
+    return [
+        Law("photons", photons, tuple(pass_seconds(photons=one) for one in photons)),
+        Law("pixels", pixels, tuple(pass_seconds(width=one) for one in widths)),
+        Law("bands", bands, tuple(pass_seconds(bands=one) for one in bands)),
+    ]
+
+
+def plot(laws: list[Law], path: Path) -> None:
+    """One curve a law, both relative to their first point."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.0, 4.5), layout="constrained")
+    axes = figure.add_subplot()
+    for law in laws:
+        slope, half = law.exponent()
+        relative = np.divide(law.sizes, law.sizes[0]), np.divide(law.seconds, law.seconds[0])
+        axes.loglog(*relative, "o-", label=f"{law.name}: exponent {slope:.2f} ± {half:.2f}")
+    axes.loglog([1, 16], [1, 16], "k:", label="linear")
+    axes.set_xlabel("size, relative to the smallest")
+    axes.set_ylabel("CPU time of a pass, relative")
+    axes.set_title(f"Cost of a pass of {SCENE}")
+    axes.legend()
+    figure.savefig(path)
+
+
+def main() -> None:
+    """Run the benchmark from the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("-o", "--output", type=Path, metavar="PLOT.svg")
+    options = parser.parse_args()
+    laws = measure()
+    for law in laws:
+        slope, half = law.exponent()
+        print(f"{law.name}: exponent {slope:.2f} ± {half:.2f}")
+        for size, seconds in zip(law.sizes, law.seconds, strict=True):
+            print(f"  {size:>9,}  {seconds:.3f} s of CPU time a pass")
+    if options.output is not None:
+        plot(laws, options.output)
+
+
+if __name__ == "__main__":
+    main()
