@@ -58,7 +58,7 @@ def _print_origin(image: SpectralImage) -> None:
     _print_row("scene", image.attribute("scene_name"))
     _print_row("observer", image.attribute("observer"))
     _print_row("ended by", image.attribute("stopping"))
-    for heading, unit in (("settings", ""), ("accuracy", ""), ("energy", "W")):
+    for heading, unit in (("settings", ""), ("features", ""), ("accuracy", ""), ("energy", "W")):
         text = image.attribute(heading)
         if text is not None:
             print(f"  {heading}")
