@@ -8,12 +8,12 @@ from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null,
 __all__: list[str] = []
 
 
-def _some(what: str, *kinds: type) -> Callable[[Subject], Verdict]:
+def _some(one: str, many: str, *kinds: type) -> Callable[[Subject], Verdict]:
     """Needed where any object has a shape of one of `kinds`."""
 
     def judge(subject: Subject) -> Verdict:
         count = sum(isinstance(item.shape, kinds) for item in subject.scene.objects)
-        return needed(f"{count} {what}") if count else null(f"no {what}")
+        return needed(f"{count} {one if count == 1 else many}") if count else null(f"no {one}")
 
     return judge
 
@@ -21,7 +21,7 @@ def _some(what: str, *kinds: type) -> Callable[[Subject], Verdict]:
 register(Feature(
     name="spheres",
     what="rays meet spheres",
-    judge=_some("sphere(s)", scenes.Sphere),
+    judge=_some("sphere", "spheres", scenes.Sphere),
     flag="spheres",
     cost=Cost(1.00, "prism"),
 ))  # fmt: skip
@@ -29,14 +29,14 @@ register(Feature(
 register(Feature(
     name="flats",
     what="rays meet rectangles, disks and planes",
-    judge=_some("rectangle(s), disk(s) or plane(s)", scenes.Rectangle, scenes.Disk, scenes.Plane),
+    judge=_some("flat", "flats", scenes.Rectangle, scenes.Disk, scenes.Plane),
     flag="flats",
 ))  # fmt: skip
 
 register(Feature(
     name="polyhedra",
     what="rays meet boxes, prisms and other convex solids",
-    judge=_some("box(es), prism(s) or polyhedra", scenes.Box, scenes.Prism, scenes.Polyhedron),
+    judge=_some("polyhedron", "polyhedra", scenes.Box, scenes.Prism, scenes.Polyhedron),
     flag="polyhedra",
     cost=Cost(1.00, "ball"),
 ))  # fmt: skip
@@ -44,7 +44,7 @@ register(Feature(
 register(Feature(
     name="lenses",
     what="rays meet lenses, exactly: conic caps and a rim",
-    judge=_some("lens(es)", scenes.Lens),
+    judge=_some("lens", "lenses", scenes.Lens),
     flag="lenses",
     cost=Cost(1.00, "ball"),
 ))  # fmt: skip
