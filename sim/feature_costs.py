@@ -34,7 +34,10 @@ from sim.render import gather_radius
 from sim.scene_data import CompiledScene, compile_scene
 from sim.settings import ResolvedSettings
 
-__all__ = ["measure_costs"]
+__all__ = ["FULL_KERNELS", "measure_costs"]
+
+FULL_KERNELS = {"photons": "full photon kernel", "camera": "full camera kernel"}
+"""Names under which the time of everything is told, over that of what the scene requires."""
 
 PHOTONS = 100_000
 PIXELS = 96 * 64
@@ -46,6 +49,8 @@ def measure_costs(
 ) -> dict[str, float]:
     """Kernel time with ÷ without each feature that can be timed on this scene, by name.
 
+    And, under `FULL_KERNELS`, that of the full kernels ÷ that of those that the scene requires.
+
     Args:
         plan: what the scene requires.
         scene: the scene; features of the camera are measured only if it has one.
@@ -53,8 +58,9 @@ def measure_costs(
         device: where it runs.
     """
     build = (settings.precision, plan.features)
+    full = (settings.precision, plan.complete("").features)
     ratios: dict[str, float] = {}
-    for kernel in ("photons", "camera"):
+    for kernel, everything in FULL_KERNELS.items():
         if kernel == "camera" and scene.camera is None:
             continue
         switched = {
@@ -64,6 +70,8 @@ def measure_costs(
             and (not one.on or one.feature.separable)
             and (other := _switched(one.feature, build)) is not None
         }
+        if full != build:
+            switched[everything] = (False, full)
         builds = list(dict.fromkeys([build, *(other for _, other in switched.values())]))
         load_kernels([_kernel(kernel, key) for key in builds], device=device,
                      threads=settings.threads)

@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
     parser.add_argument("--measure", action="store_true",
-                        help="measure the times here, on this scene (about a minute)")
+                        help="measure the times here, on this scene (a minute or two)")
     parser.add_argument("--check", action="store_true",
                         help="trace 1%% of a pass's photons with the full kernel as well, and"
                              " compare; status 1 if they differ by more than the bounds say")
@@ -67,6 +67,8 @@ def run(arguments: argparse.Namespace) -> None:
     print(f"bound: relative, {BOUND_UNIT}")
     where = "measured here, on this scene" if arguments.measure else f"recorded on {RECORDED_ON}"
     print(f"time: of the kernel with the feature ÷ without it, {where}")
+    if costs is not None:
+        _print_full_kernels(costs)
     if arguments.check:
         _print_canary(run_interruptibly(functools.partial(_checked, scene, resolved)))
 
@@ -101,6 +103,15 @@ def _time(one: Decision, costs: dict[str, float] | None) -> str:
         return "–" if ratio is None else f"{ratio:.2f}"
     cost = one.feature.cost
     return "–" if cost is None else f"{cost.ratio:.2f} ({cost.scene})"
+
+
+def _print_full_kernels(costs: dict[str, float]) -> None:
+    """What compiling for no more than the scene requires is worth."""
+    from sim.feature_costs import FULL_KERNELS
+
+    for name in FULL_KERNELS.values():
+        if name in costs:
+            print(f"{name}: {costs[name]:.2f} of the time of the one that the scene requires")
 
 
 def _print_canary(report: CanaryReport | None) -> None:

@@ -21,6 +21,7 @@ class Features:
         dispersion: boundaries can part light by its wavelength.
         undispersed_photons: photons that no dispersion has touched can be in the map.
         direct_light: shadow rays find what comes straight from the lamps.
+        beams, sphere_lamps, rectangle_lamps: which extended lamps shadow rays can lead to.
         media_count: how many media there are, the ambient one among them. A size, no feature.
     """
 
@@ -37,4 +38,7 @@ class Features:
     dispersion: bool = True
     undispersed_photons: bool = True
     direct_light: bool = True
+    beams: bool = True
+    sphere_lamps: bool = True
+    rectangle_lamps: bool = True
     media_count: int = 1

@@ -45,7 +45,8 @@ def test_without_a_camera_its_features_are_not_timed(small_scene, few):
 
 def test_ratios_are_with_over_without(small_scene, few, monkeypatch):
     # The build at hand has no tables and has reflected branches.
-    plan, settings = narrowed(small_scene, "tables", "reflected branches")
+    scene = small_scene.model_copy(update={"camera": None})
+    plan, settings = narrowed(scene, "tables", "reflected branches")
     timed = []
 
     def ratio(one, other):
@@ -54,11 +55,12 @@ def test_ratios_are_with_over_without(small_scene, few, monkeypatch):
 
     monkeypatch.setattr(feature_costs, "_ratio", ratio)
     monkeypatch.setattr(feature_costs, "load_kernels", lambda *_, **__: None)
-    ratios = feature_costs.measure_costs(
-        plan, small_scene, settings, device=start_device("cpu")
-    )
-    assert ratios == {"tables": 0.25, "reflected branches": 4.0}
-    assert len(timed) == 2
+    ratios = feature_costs.measure_costs(plan, scene, settings, device=start_device("cpu"))
+    # The full kernels differ in the tables alone here, and take as long.
+    full = feature_costs.FULL_KERNELS["photons"]
+    assert {name: ratios[name] for name in ("tables", "reflected branches", full)} == {
+        "tables": 0.25, "reflected branches": 4.0, full: 0.25
+    }  # fmt: skip
     assert timed[0][0] is timed[1][0]
 
 

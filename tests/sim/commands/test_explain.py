@@ -126,13 +126,16 @@ def test_a_breach_is_an_exit_status(capsys, monkeypatch, small_file):
 def test_measured_times_take_the_place_of_recorded_ones(capsys, monkeypatch, small_file):
     def measured(plan, scene, settings, *, device):
         assert (scene.title[:7], settings.precision, device) == ("A small", "float64", "cpu")
-        return {"tables": 1.25}
+        return {"tables": 1.25, "full photon kernel": 1.5}
 
     monkeypatch.setattr(sim.feature_costs, "measure_costs", measured)
     output = explain(capsys, small_file, "--measure").out
     assert " 1.25 " in rows(output)["tables"][2]
     assert " – " in rows(output)["spheres"][2]
     assert "measured here, on this scene" in output
+    assert output.endswith(
+        "full photon kernel: 1.50 of the time of the one that the scene requires\n"
+    )
 
 
 def test_a_report_says_what_was_allowed():

@@ -25,7 +25,7 @@ from spectra import Cauchy, Medium, Tabulated, glass
 NOTHING = Features(
     spheres=False, flats=False, polyhedra=False, lenses=False, sellmeier=False, cauchy=False,
     tabulated=False, air_conversion=False, boundaries=False, reflected_branches=False,
-    dispersion=False,
+    dispersion=False, beams=False, sphere_lamps=False, rectangle_lamps=False,
 )  # fmt: skip
 AMBIENT = Medium("reference", Cauchy((1.0,)), (0.0, 1e9), "", "air")
 TABLE = Medium("table", Tabulated((400.0, 700.0), (1.5, 1.4)), (400.0, 700.0), "", "air")
@@ -152,6 +152,26 @@ def test_light_at_boundaries_is_as_the_media_ask(fields, flags):
 def test_direct_and_undispersed_light_are_as_the_settings_ask(material, direct_light, flags):
     features = judge(scene_of(BALL, material=material), direct_light=direct_light).features
     assert (features.direct_light, features.undispersed_photons) == flags
+
+
+PLACE = {"position": (0.0, 5.0, 0.0), "flux": 1.0, "spectrum": "E"}
+LAMPS = {
+    "beams": scenes.Beam(
+        direction=(0.0, -1.0, 0.0), profile=scenes.RoundProfile(radius=0.3), **PLACE
+    ),
+    "sphere_lamps": scenes.SphereLamp(radius=0.1, **PLACE),
+    "rectangle_lamps": scenes.RectangleLamp(size=(1.0, 1.0), normal=(0.0, -1.0, 0.0), **PLACE),
+    "neither": scenes.Point(**PLACE),
+}
+
+
+@pytest.mark.parametrize("flag", LAMPS)
+def test_a_lamp_asks_for_its_own_shadow_rays_only(flag):
+    scene = scene_of(FLOOR, emitters=[LAMPS[flag]])
+    some, none = (judge(scene, direct_light=how).features for how in ("lamps", "photons"))
+    lamps = [name for name in LAMPS if name != "neither"]
+    assert {name: getattr(some, name) for name in lamps} == {name: name == flag for name in lamps}
+    assert not any(getattr(none, name) for name in lamps)
 
 
 def test_without_settings_nothing_that_they_decide_is_left_out():
