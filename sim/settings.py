@@ -60,6 +60,7 @@ _POSITIVE_NUMBERS: Final = {"radius": math.inf, "target_error": 1.0, "time_budge
 _PRECISIONS: Final = ("float32", "float64")
 _DIRECT_LIGHTS: Final = ("lamps", "photons")
 _FEATURE_CHOICES: Final = ("required", "all")
+_LARGEST_TOLERANCE: Final = 0.5
 _DEVICE: Final = re.compile(r"cpu|cuda:\d+")
 
 
@@ -134,9 +135,11 @@ class RenderSettings:
             raise SettingsError("direct_light", self.direct_light, "'lamps' or 'photons'")
         if self.features not in _FEATURE_CHOICES:
             raise SettingsError("features", self.features, "'required' or 'all'")
-        if self.omission_tolerance != 0.0 or isinstance(self.omission_tolerance, bool):
-            tolerance = _positive_number("omission_tolerance", self.omission_tolerance, 0.5)
-            self._replace("omission_tolerance", tolerance)
+        tolerance = _finite_number(self.omission_tolerance)
+        if not 0.0 <= tolerance <= _LARGEST_TOLERANCE:
+            allowed = f"a number from 0 to {_LARGEST_TOLERANCE:g}"
+            raise SettingsError("omission_tolerance", self.omission_tolerance, allowed)
+        self._replace("omission_tolerance", tolerance)
 
     def _replace(self, field: str, value: object) -> None:
         """Store a validated value as a plain Python number, although the class is frozen."""
@@ -214,13 +217,19 @@ def _whole_number(field: str, value: SupportsIndex, lowest: int, highest: int) -
 def _positive_number(field: str, value: SupportsFloat, highest: float) -> float:
     """`value` as a finite float within (0, highest]."""
     allowed = "a finite number above 0" + (f", at most {highest:g}" if highest < math.inf else "")
+    number = _finite_number(value)
+    if not 0.0 < number <= highest:
+        raise SettingsError(field, value, allowed)
+    return number
+
+
+def _finite_number(value: SupportsFloat) -> float:
+    """`value` as a float; NaN, which is within no limits, if it is no finite number."""
     try:
         number = math.nan if isinstance(value, bool | str) else float(value)
     except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if not (0.0 < number <= highest and math.isfinite(number)):
-        raise SettingsError(field, value, allowed)
-    return number
+        return math.nan
+    return number if math.isfinite(number) else math.nan
 
 
 def _available_cores() -> int:

@@ -35,10 +35,19 @@ def matched(small_scene):
     return small_scene.model_copy(update={"objects": objects, "ambient": "N-BK7"})
 
 
+def constant(small_scene):
+    """A ball of glass without dispersion: it shines in all bands at once."""
+    ball, floor = small_scene.objects
+    glass = scenes.Dielectric(medium=scenes.ConstantMedium(eta=1.5))
+    objects = (ball.model_copy(update={"material": glass}), floor)
+    return small_scene.model_copy(update={"objects": objects})
+
+
 CASES = {
     "ball": (lambda own: own, {}),
     "prism": (lambda _: small(scenes.load("prism")), {}),
     "lens": (lambda _: small(scenes.load("lens")), {}),
+    "constant": (constant, {}),
     "without glass": (without_glass, {"direct_light": "photons"}),
     "matched": (matched, {}),
 }
@@ -139,6 +148,7 @@ def test_an_omission_within_its_bound_passes(small_scene):
     scene = small_scene.model_copy(update={"objects": (glass, floor)})
     choice = choose(scene, omission_tolerance=1e-2)
     assert not choice.compiled.features.dispersion
+    assert not choice.compiled.data.bodies.numpy()["dispersive"].any()
     assert choice.canary.passed
     assert 0.0 < choice.canary.difference < 0.01 * choice.plan.bound
     assert 1e-5 < choice.plan.bound < 1e-3
