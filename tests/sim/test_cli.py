@@ -164,7 +164,7 @@ def test_info_tells_what_was_left_out(capfd, tmp_path, synthetic_picture):
     at = lines.index("  features")
     assert lines[at + 1].split(maxsplit=1) == ["on", "flats, lenses"]
     assert lines[at + 2].split(maxsplit=1) == ["off", "spheres 0, small 1e-07"]
-    assert lines[at + 3] == "  energy"
+    assert lines[at + 3] == "  accuracy"
 
 
 def test_info_gives_the_scene_back(capfd, tmp_path, synthetic_picture):

@@ -141,16 +141,18 @@ def test_light_at_boundaries_is_as_the_media_ask(fields, flags):
 
 
 @pytest.mark.parametrize(
-    ("material", "direct_light", "flags"),
+    ("fields", "direct_light", "flags"),
     [
-        (BK7, "lamps", (True, False)),
-        (BK7, "photons", (False, True)),
-        (CONSTANT, "lamps", (True, True)),
-        (CONSTANT, "photons", (False, True)),
+        ({"material": BK7}, "lamps", (True, False)),
+        ({"material": BK7}, "photons", (False, True)),
+        ({"material": CONSTANT}, "lamps", (True, True)),
+        ({"material": CONSTANT}, "photons", (False, True)),
+        # Any boundary with water disperses.
+        ({"material": CONSTANT, "ambient": "water"}, "lamps", (True, False)),
     ],
 )
-def test_direct_and_undispersed_light_are_as_the_settings_ask(material, direct_light, flags):
-    features = judge(scene_of(BALL, material=material), direct_light=direct_light).features
+def test_direct_and_undispersed_light_are_as_the_settings_ask(fields, direct_light, flags):
+    features = judge(scene_of(BALL, **fields), direct_light=direct_light).features
     assert (features.direct_light, features.undispersed_photons) == flags
 
 
@@ -230,6 +232,15 @@ def test_what_the_user_chose_is_neither_refused_nor_summed():
     assert plan.bound == 0.0
     assert plan.report()["asked_for"] == ["double precision"]
     assert not decision(plan.complete("why not"), "double precision").on
+
+
+def test_what_the_user_chose_takes_no_room_from_the_rest(registering):
+    registering(dummy("chosen", Verdict("asked for", 4e-7, chosen=True)))
+    registering(dummy("small", Verdict("small", 9e-7)))
+    plan = judge(scene_of(BALL))
+    assert not decision(plan, "chosen").on
+    assert not decision(plan, "small").on
+    assert plan.bound == 9e-7
 
 
 def test_all_features_can_be_asked_for(registering):
