@@ -13,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from sim.commands import glass, info, render, scenes, schema, trace
+from sim.commands import explain, glass, info, render, scenes, schema, trace
 from sim.native_output import end_silence
 from sim.version import VERSION
 
@@ -22,6 +22,7 @@ __all__ = ["main", "parse_arguments", "run_from_shell"]
 _COMMANDS = {
     "render": render,
     "trace": trace,
+    "explain": explain,
     "scenes": scenes,
     "glass": glass,
     "info": info,

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 import scenes
+from sim.canary import choose_kernels
 from sim.device import start_device
 from sim.errors import SettingsError
 from sim.image.camera import compile_camera
@@ -38,7 +39,7 @@ from sim.photons.photon_path import make_trace_photons
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
-from sim.scene_data import CompiledScene, compile_scene
+from sim.scene_data import CompiledScene
 from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
@@ -75,7 +76,8 @@ def render(
     watch = Stopwatch(plan, progress)
     with watch.timing("compile"):
         device = start_device(plan.device)
-        compiled = compile_scene(scene, precision=plan.precision, device=device)
+        choice = choose_kernels(scene, plan, device=device)
+        compiled = choice.compiled
         edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
         assert scene.camera is not None  # require_renderable has seen to it
         _load_all_kernels(compiled, plan.threads)
@@ -111,6 +113,7 @@ def render(
         settings=plan.closed(film.passes),
         stopping=rule.outcome,
         timings=watch.timings,
+        features=choice.report(),
     )
 
 

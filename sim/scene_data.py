@@ -14,9 +14,10 @@ import warp as wp
 
 import scenes
 from scenes.frames import frame_about
-from sim.features import Features, find_features
+from sim.features import Features, Subject, find_features
 from sim.optics.dispersion import DISPERSION_COEFFICIENTS
 from sim.precision import precision_types
+from sim.scene_media import collect_media
 from sim.scene_structs import (
     ABSORBER,
     CAUCHY,
@@ -69,6 +70,19 @@ class CompiledScene:
         """World position(s) (..., 3) [m] in the local frame."""
         return np.asarray(position, dtype=np.float64) - self.origin
 
+    @property
+    def bounding_radius(self) -> float:
+        """Radius about the local origin that holds every finite object [m]; 1 if there is none."""
+        reach = [
+            float(np.linalg.norm(self.to_local(centre))) + radius
+            for centre, radius in (
+                item.shape.bounding_sphere()
+                for item in self.scene.objects
+                if not isinstance(item.shape, scenes.Plane)
+            )
+        ]
+        return max(reach, default=1.0)
+
 
 def find_origin(scene: scenes.Scene) -> FloatArray:
     """Centre of the finite objects' bounding box, (3,) [m]; the world's origin if there is none."""
@@ -86,7 +100,11 @@ def find_origin(scene: scenes.Scene) -> FloatArray:
 
 
 def compile_scene(
-    scene: scenes.Scene, *, precision: str = "float64", device: str = "cpu"
+    scene: scenes.Scene,
+    *,
+    precision: str = "float64",
+    device: str = "cpu",
+    features: Features | None = None,
 ) -> CompiledScene:
     """Lay `scene` out as device arrays.
 
@@ -94,17 +112,19 @@ def compile_scene(
         scene: a validated scene.
         precision: what the kernels compute with.
         device: where the arrays live.
+        features: what the kernels must handle; None: all that could change anything.
     """
     origin = find_origin(scene)
-    media, medium_of, air_powers = _collect_media(scene)
-    features = find_features(scene, media, air_powers)
+    media, medium_of, air_powers = collect_media(scene)
+    if features is None:
+        features = find_features(scene, media, air_powers)
     structs = make_scene_structs(precision)
     data = structs.Scene()
     places = _fill_shapes(data, scene, origin, precision, device)
     rows = [
         (*place, *material)
         for place, material in zip(
-            places, _materials(scene, media, medium_of, air_powers), strict=True
+            places, _materials(scene, media, medium_of, air_powers, features), strict=True
         )
     ]
     data.bodies = struct_array(structs.Body, rows, device)
@@ -197,54 +217,20 @@ def _lens_row(lens: scenes.Lens, centre: FloatArray, prim: int, precision: str) 
     )
 
 
-def _ambient_medium(scene: scenes.Scene) -> Medium:
-    """What surrounds the objects; index 1 for air, vacuum, and each index's own reference."""
-    ambient = scene.resolved_ambient()
-    if isinstance(ambient, Medium):
-        return ambient
-    return Medium(
-        name=ambient,
-        dispersion=Cauchy((1.0,)),
-        wavelength_range_nm=(0.0, np.inf),
-        source="the index is relative to it",
-        relative_to="vacuum" if ambient == "vacuum" else "air",
-    )
-
-
-def _collect_media(scene: scenes.Scene) -> tuple[list[Medium], list[int], list[int]]:
-    """Media in use (the ambient one first), each object's medium, and each one's air power."""
-    ambient = _ambient_medium(scene)
-    media, medium_of = [ambient], []
-    for item in scene.objects:
-        if isinstance(item.material, scenes.Dielectric):
-            medium = item.material.resolved()
-            if medium not in media:
-                media.append(medium)
-            medium_of.append(media.index(medium))
-        else:
-            medium_of.append(0)
-    if scene.ambient == "reference":
-        return media, medium_of, [0] * len(media)
-    # Any other ambient: all indices on one footing, relative to the ambient's own reference.
-    powers = []
-    for medium in media:
-        if medium.relative_to == ambient.relative_to:
-            powers.append(0)
-        else:
-            powers.append(1 if medium.relative_to == "air" else -1)
-    return media, medium_of, powers
-
-
 def _materials(
-    scene: scenes.Scene, media: list[Medium], medium_of: list[int], air_powers: list[int]
+    scene: scenes.Scene,
+    media: list[Medium],
+    medium_of: list[int],
+    air_powers: list[int],
+    features: Features,
 ) -> list[tuple[int, int, int, int]]:
     """Each object's material, media outside and inside, and whether its boundary disperses."""
-    # Air disperses too, and is a factor of the indices that are converted.
-    varies = [m.is_dispersive or power != 0 for m, power in zip(media, air_powers, strict=True)]
+    varies = Subject(scene, tuple(media), tuple(air_powers)).varying_media
     rows = []
     for item, medium in zip(scene.objects, medium_of, strict=True):
         if isinstance(item.material, scenes.Dielectric):
-            rows.append((int(DIELECTRIC), 0, medium, int(varies[medium] or varies[0])))
+            disperses = features.dispersion and (varies[medium] or varies[0])
+            rows.append((int(DIELECTRIC), 0, medium, int(disperses)))
         elif isinstance(item.material, scenes.Lambertian):
             rows.append((int(LAMBERTIAN), 0, 0, 0))
         else:

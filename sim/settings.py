@@ -23,6 +23,7 @@ __all__ = [
     "DEFAULTS",
     "PRESETS",
     "DirectLight",
+    "FeatureChoice",
     "Precision",
     "Preset",
     "RenderSettings",
@@ -31,6 +32,7 @@ __all__ = [
 
 Precision: TypeAlias = Literal["float32", "float64"]
 DirectLight: TypeAlias = Literal["lamps", "photons"]
+FeatureChoice: TypeAlias = Literal["required", "all"]
 Preset: TypeAlias = Literal["draft", "standard", "reference"]
 
 PRESETS: Final[dict[str, dict[str, float]]] = {
@@ -57,6 +59,8 @@ _WHOLE_NUMBERS: Final = {
 _POSITIVE_NUMBERS: Final = {"radius": math.inf, "target_error": 1.0, "time_budget": math.inf}
 _PRECISIONS: Final = ("float32", "float64")
 _DIRECT_LIGHTS: Final = ("lamps", "photons")
+_FEATURE_CHOICES: Final = ("required", "all")
+_LARGEST_TOLERANCE: Final = 0.5
 _DEVICE: Final = re.compile(r"cpu|cuda:\d+")
 
 
@@ -85,6 +89,10 @@ class RenderSettings:
         threads: CPU threads; None: all cores. It does not change the picture.
         device: "cpu", or "cuda:0" and so on.
         precision: Floating-point type of tracing; None: float64 on the CPU, float32 on CUDA.
+        features: What kernels are compiled for: "required" by the scene, or "all" there is.
+        omission_tolerance: What the bounds on the error of all that is left out may add up to,
+            relative, in the unit of `sim.features.registry`; 0 leaves out only what cannot
+            change a bit.
 
     Raises:
         SettingsError: A value is outside what is allowed.
@@ -103,6 +111,8 @@ class RenderSettings:
     threads: int | None = None
     device: str = "cpu"
     precision: Precision | None = None
+    features: FeatureChoice = "required"
+    omission_tolerance: float = 1e-6
 
     def __post_init__(self) -> None:
         for field, (lowest, highest) in _WHOLE_NUMBERS.items():
@@ -123,6 +133,13 @@ class RenderSettings:
             raise SettingsError("precision", self.precision, "'float32' or 'float64'")
         if self.direct_light not in _DIRECT_LIGHTS:
             raise SettingsError("direct_light", self.direct_light, "'lamps' or 'photons'")
+        if self.features not in _FEATURE_CHOICES:
+            raise SettingsError("features", self.features, "'required' or 'all'")
+        tolerance = _finite_number(self.omission_tolerance)
+        if not 0.0 <= tolerance <= _LARGEST_TOLERANCE:
+            allowed = f"a number from 0 to {_LARGEST_TOLERANCE:g}"
+            raise SettingsError("omission_tolerance", self.omission_tolerance, allowed)
+        self._replace("omission_tolerance", tolerance)
 
     def _replace(self, field: str, value: object) -> None:
         """Store a validated value as a plain Python number, although the class is frozen."""
@@ -200,13 +217,19 @@ def _whole_number(field: str, value: SupportsIndex, lowest: int, highest: int) -
 def _positive_number(field: str, value: SupportsFloat, highest: float) -> float:
     """`value` as a finite float within (0, highest]."""
     allowed = "a finite number above 0" + (f", at most {highest:g}" if highest < math.inf else "")
+    number = _finite_number(value)
+    if not 0.0 < number <= highest:
+        raise SettingsError(field, value, allowed)
+    return number
+
+
+def _finite_number(value: SupportsFloat) -> float:
+    """`value` as a float; NaN, which is within no limits, if it is no finite number."""
     try:
         number = math.nan if isinstance(value, bool | str) else float(value)
     except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if not (0.0 < number <= highest and math.isfinite(number)):
-        raise SettingsError(field, value, allowed)
-    return number
+        return math.nan
+    return number if math.isfinite(number) else math.nan
 
 
 def _available_cores() -> int:

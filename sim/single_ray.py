@@ -230,24 +230,12 @@ class _Record:
 
     def _exit_point(self, start: FloatArray, direction: FloatArray) -> FloatArray:
         """Where a ray leaves the sphere of the scene's bounds, twice as large for the eye."""
-        reach = 2.0 * self._bounding_radius()
+        reach = 2.0 * self.compiled.bounding_radius
         along = float(np.dot(start, direction))
         closest2 = float(np.dot(start, start)) - along * along
         half_chord = np.sqrt(max(reach * reach - closest2, 0.0))
         exit_point: FloatArray = start + max(half_chord - along, 0.5 * reach) * direction
         return exit_point
-
-    def _bounding_radius(self) -> float:
-        """Radius about the local origin that holds every finite object [m]; 1 if there is none."""
-        reach = [
-            float(np.linalg.norm(self.compiled.to_local(centre))) + radius
-            for centre, radius in (
-                item.shape.bounding_sphere()
-                for item in self.compiled.scene.objects
-                if not isinstance(item.shape, scenes.Plane)
-            )
-        ]
-        return max(reach, default=1.0)
 
 
 def _require_indices(compiled: CompiledScene, wavelengths_nm: FloatArray) -> None:

@@ -198,6 +198,8 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         """Total or not, reflectance, and the two directions at a boundary of relative index η."""
         cos_theta_i = wp.min(-wp.dot(direction, normal), real(1.0))
         reflected = reflect(direction, normal, cos_theta_i)
+        if wp.static(not features.reflected_branches):
+            return 0, real(0.0), reflected, direction
         if eta == real(1.0):
             return 0, real(0.0), reflected, direction  # exactly, at any angle
         sin2_t = sin2_theta_t(cos_theta_i, eta)
@@ -228,20 +230,21 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
             met.event = EVENT_ABSORB
             if body.material == LAMBERTIAN:
                 met.event = EVENT_DEPOSIT
-            elif body.material == DIELECTRIC:
-                met.event = EVENT_BOUNDARY
-                met.dispersive = body.dispersive
-                eta = indices[body.medium_outside] / indices[body.medium_inside]
-                if met.side == 1:
-                    eta = indices[body.medium_inside] / indices[body.medium_outside]
-                total, reflectance, reflected, refracted = cross_boundary(
-                    ray.direction, normal, eta
-                )
-                met.eta = eta
-                met.total = total
-                met.reflectance = reflectance
-                met.reflected = reflected
-                met.refracted = refracted
+            if wp.static(features.boundaries):
+                if body.material == DIELECTRIC:
+                    met.event = EVENT_BOUNDARY
+                    met.dispersive = body.dispersive
+                    eta = indices[body.medium_outside] / indices[body.medium_inside]
+                    if met.side == 1:
+                        eta = indices[body.medium_inside] / indices[body.medium_outside]
+                    total, reflectance, reflected, refracted = cross_boundary(
+                        ray.direction, normal, eta
+                    )
+                    met.eta = eta
+                    met.total = total
+                    met.reflectance = reflectance
+                    met.reflected = reflected
+                    met.refracted = refracted
         return met
 
     @wp.func

@@ -58,16 +58,27 @@ def _print_origin(image: SpectralImage) -> None:
     _print_row("scene", image.attribute("scene_name"))
     _print_row("observer", image.attribute("observer"))
     _print_row("ended by", image.attribute("stopping"))
-    for heading, unit in (("settings", ""), ("accuracy", ""), ("energy", "W")):
-        text = image.attribute(heading)
-        if text is not None:
+    for heading, unit in (("settings", ""), ("features", ""), ("accuracy", ""), ("energy", "W")):
+        values = json.loads(image.attribute(heading) or "{}")
+        if values:
             print(f"  {heading}")
-            for name, value in json.loads(text).items():
-                _print_row(f"  {name}", value, unit)
+        for name, value in values.items():
+            _print_row(f"  {name}", value, unit)
 
 
 def _print_row(name: str, value: object, unit: str = "") -> None:
     """One line, unless the file does not say."""
-    if value is not None and value != "":
-        shown = f"{value:.9g}" if isinstance(value, float) else value
-        print(f"  {name:<20}{shown} {unit}".rstrip())
+    text = _text(value)
+    if text:
+        print(f"  {name:<22}{text} {unit}".rstrip())
+
+
+def _text(value: object) -> str:
+    """A value of an attribute, as a reader wants it."""
+    if isinstance(value, float):
+        return f"{value:.9g}"
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {_text(one)}" for name, one in value.items())
+    if isinstance(value, list):
+        return ", ".join(map(_text, value))
+    return "" if value is None else str(value)

@@ -187,17 +187,19 @@ def make_render_camera(precision: str, features: Features) -> Any:
         sight.lamp_key = key + wp.uint64(3)
         sight.sample = film.turn
         sight.shadow_rays = SHADOW_RAYS
-        if follow(scene, lights, ray, sight, film.sample) == 1:
-            sight.deal = int(sight.key >> wp.uint64(40))
-            sight.weight = real(1.0)
-            sight.shadow_rays = 1
-            # Where the round starts is each pixel's own: turns leave neither stripes nor checks.
-            sight.band = (int(key >> wp.uint64(40)) + film.turn) % film.turns
-            while sight.band < receivers.bands:
-                offset_nm = receivers.band_width_nm * (real(sight.band) + inside_band)
-                sight.wavelength_nm = receivers.first_edge_nm + offset_nm
-                follow(scene, lights, ray, sight, film.sample)
-                sight.band += film.turns
+        meets_dispersion = follow(scene, lights, ray, sight, film.sample)
+        if wp.static(features.dispersion):
+            if meets_dispersion == 1:
+                sight.deal = int(sight.key >> wp.uint64(40))
+                sight.weight = real(1.0)
+                sight.shadow_rays = 1
+                # Where the round starts is each pixel's own: turns leave no stripes or checks.
+                sight.band = (int(key >> wp.uint64(40)) + film.turn) % film.turns
+                while sight.band < receivers.bands:
+                    offset_nm = receivers.band_width_nm * (real(sight.band) + inside_band)
+                    sight.wavelength_nm = receivers.first_edge_nm + offset_nm
+                    follow(scene, lights, ray, sight, film.sample)
+                    sight.band += film.turns
 
     @wp.func
     def add_value(

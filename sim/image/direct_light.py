@@ -113,7 +113,7 @@ def make_beam_connection(precision: str) -> object:
 
 
 @functools.cache
-def make_connection(precision: str) -> object:
+def make_connection(precision: str, features: Features) -> object:
     """Device function `connect(emitter, point, u0, u1)`.
 
     Returns:
@@ -148,14 +148,17 @@ def make_connection(precision: str) -> object:
 
     @wp.func
     def connect(emitter: emitter_type, point: vec3, u0: real, u1: real):
-        if emitter.kind == BEAM:
-            return connect_beam(emitter, point, u0, u1)
-        if emitter.kind == SPHERE_LAMP:
-            return connect_sphere(emitter, point, u0, u1)
+        if wp.static(features.beams):
+            if emitter.kind == BEAM:
+                return connect_beam(emitter, point, u0, u1)
+        if wp.static(features.sphere_lamps):
+            if emitter.kind == SPHERE_LAMP:
+                return connect_sphere(emitter, point, u0, u1)
         origin = emitter.centre
-        if emitter.kind == RECTANGLE_LAMP:
-            origin += emitter.frame[0] * ((u0 + u0 - real(1.0)) * emitter.half_u)
-            origin += emitter.frame[1] * ((u1 + u1 - real(1.0)) * emitter.half_v)
+        if wp.static(features.rectangle_lamps):
+            if emitter.kind == RECTANGLE_LAMP:
+                origin += emitter.frame[0] * ((u0 + u0 - real(1.0)) * emitter.half_u)
+                origin += emitter.frame[1] * ((u1 + u1 - real(1.0)) * emitter.half_v)
         line = point - origin
         distance = wp.length(line)
         way = line / distance
@@ -175,7 +178,7 @@ def make_direct_light(precision: str, features: Features) -> object:
     real, scene_type, interaction_type = structs.real, structs.Scene, structs.Interaction
     ray_type, lamps_type = structs.Ray, lamp_structs.Lamps
     sight_type = make_sight_struct(precision)
-    connect = make_connection(precision)
+    connect = make_connection(precision, features)
     intersect = make_transport(precision, features).intersect
 
     @wp.func

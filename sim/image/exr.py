@@ -104,6 +104,7 @@ def _reproducing_attributes(picture: Picture) -> dict[str, str]:
         "accuracy": json.dumps(picture.accuracy.summary()),
         "stopping": picture.stopping,
         "energy": json.dumps(dataclasses.asdict(picture.energy)),
+        "features": json.dumps(picture.features),
         "bands": BAND_MEANS,
         "band_edges_nm": json.dumps(picture.edges_nm.tolist()),
         "observer": film.observer,

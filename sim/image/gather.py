@@ -204,10 +204,11 @@ def make_gather(precision: str, features: Features) -> object:
             while lamp < receivers.lamps:
                 total = sums[row, bands + lamp]
                 sums[row, bands + lamp] = wp.float64(0.0)
-                if lights.direct == 1:
-                    total += wp.float64(
-                        scale * direct_irradiance(scene, lights.lamps, lamp, met, sight)
-                    )
+                if wp.static(features.direct_light):
+                    if lights.direct == 1:
+                        total += wp.float64(
+                            scale * direct_irradiance(scene, lights.lamps, lamp, met, sight)
+                        )
                 if total > wp.float64(0.0):
                     band = int(0)
                     while band < bands:
@@ -215,22 +216,24 @@ def make_gather(precision: str, features: Features) -> object:
                         sums[row, band] += total * share
                         band += 1
                 lamp += 1
-        else:
+        elif wp.static(features.dispersion):
             total_band, bias_band = sum_group(photons, receivers, met, sight.band, sight.band)
-            if photons.undispersed == 1:
-                dealt = bands + (sight.band + sight.deal) % DEALS
-                undispersed, bias_dealt = sum_group(photons, receivers, met, dealt, sight.band)
-                total_band += undispersed * real(wp.static(float(DEALS)))
-                bias_band += bias_dealt * real(wp.static(float(DEALS)))
+            if wp.static(features.undispersed_photons):
+                if photons.undispersed == 1:
+                    dealt = bands + (sight.band + sight.deal) % DEALS
+                    undispersed, bias_dealt = sum_group(photons, receivers, met, dealt, sight.band)
+                    total_band += undispersed * real(wp.static(float(DEALS)))
+                    bias_band += bias_dealt * real(wp.static(float(DEALS)))
             total_band *= density
             bias_band *= density * scale * receivers.luminance[sight.band]
             sums[row, bands + receivers.lamps] += wp.float64(bias_band)
-            if lights.direct == 1:
-                lamp = int(0)
-                while lamp < receivers.lamps:
-                    irradiance = direct_irradiance(scene, lights.lamps, lamp, met, sight)
-                    total_band += irradiance * receivers.spread[lamp, met.prim, sight.band]
-                    lamp += 1
+            if wp.static(features.direct_light):
+                if lights.direct == 1:
+                    lamp = int(0)
+                    while lamp < receivers.lamps:
+                        irradiance = direct_irradiance(scene, lights.lamps, lamp, met, sight)
+                        total_band += irradiance * receivers.spread[lamp, met.prim, sight.band]
+                        lamp += 1
             sums[row, sight.band] += wp.float64(scale * total_band)
 
     return gather

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,7 @@ class Picture:
         settings: The settings that render it again, resolved: with the passes that there were.
         stopping: Why there were no more: "all passes", "target error" or "time budget".
         timings: Seconds that each stage took.
+        features: What the kernels could do and could not, and what that can cost, ready for JSON.
     """
 
     spectral_radiance: NDArray[np.float64]
@@ -54,6 +55,7 @@ class Picture:
     settings: ResolvedSettings
     stopping: str = "all passes"
     timings: dict[str, float] = field(default_factory=dict)
+    features: dict[str, Any] = field(default_factory=dict)
 
     @property
     def wavelengths_nm(self) -> NDArray[np.float64]:

@@ -1,6 +1,6 @@
 """The photons that one pass stored, and where its energy went."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -23,12 +23,14 @@ class PhotonBatch:
         slots: (n,) int32, the slots of `data` that hold photons, in the order of emission.
         books: where the pass's flux went.
         origin: (3,), world position of the local frame's origin [m].
+        deposits: (ranges,) how many photons each range of the launch stored, in their order.
     """
 
     data: Any
     slots: npt.NDArray[np.int32]
     books: EnergyBooks
     origin: npt.NDArray[np.float64]
+    deposits: npt.NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, dtype=np.int32))
 
     def __len__(self) -> int:
         return len(self.slots)

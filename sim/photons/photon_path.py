@@ -201,9 +201,10 @@ def make_trace_photons(precision: str, features: Features) -> Any:
             # What meets a dispersive surface first is followed in several colours at once.
             colours = int(1)
             first = intersect(scene, ray)
-            if first.prim >= 0:
-                if scene.bodies[first.prim].dispersive == 1:
-                    colours = int(COLOURS)
+            if wp.static(features.dispersion):
+                if first.prim >= 0:
+                    if scene.bodies[first.prim].dispersive == 1:
+                        colours = int(COLOURS)
             flux = emitted / real(colours)
             colour = int(0)
             while colour < colours:

@@ -29,7 +29,7 @@ RUN_LENGTH = 256
 over them. On a GPU each photon has a thread."""
 
 BRANCH_THRESHOLD = 0.01
-"""A branch below this fraction of its photon's flux plays roulette for it."""
+"""What `branch_threshold` is in a rendering."""
 
 _ROW = 32
 """Numbers in a range's row of counters, of which few are used: no two cores write to one cache
@@ -62,6 +62,8 @@ def trace_photons(
     store_direct: bool = True,
     stop: threading.Event | None = None,
     on_done: Callable[[int], None] | None = None,
+    range_size: int = RANGE_SIZE,
+    branch_threshold: float = BRANCH_THRESHOLD,
 ) -> PhotonBatch:
     """Emit and trace one pass of photons.
 
@@ -75,17 +77,20 @@ def trace_photons(
         store_direct: also store what comes straight from a lamp; else it is only in the books.
         stop: once set, from another thread, tracing ends; the batch is then incomplete.
         on_done: told of finished photons.
+        range_size: photons a launch.
+        branch_threshold: a branch below this fraction of its photon's flux plays roulette for it.
     """
     lamps.seed(compiled.device, seed, pass_index)
     shares: list[_Share] = []
     slot = 0
     for row, stream in enumerate(lamps.streams):
-        for start, count in cut_ranges(stream.photons, RANGE_SIZE):
+        for start, count in cut_ranges(stream.photons, range_size):
             room = count * _SLOTS_PER_PHOTON
             shares.append(_Share(row, start, count, slot, room))
             slot += room
     run = _Run(
-        compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, stop
+        compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, stop,
+        branch_threshold,
     )
     photons, counts, books = run.trace(shares, slot, on_done)
     short = [i for i, share in enumerate(shares) if counts[i] > share.slot_count]
@@ -102,7 +107,7 @@ def trace_photons(
             for share, count in zip(shares, counts, strict=True)
         ]
     )
-    return PhotonBatch(photons, slots, EnergyBooks.from_rows(books), compiled.origin)
+    return PhotonBatch(photons, slots, EnergyBooks.from_rows(books), compiled.origin, counts)
 
 
 @dataclass(frozen=True)
@@ -117,6 +122,7 @@ class _Run:
     threads: int
     store_direct: bool
     stop: threading.Event | None
+    branch_threshold: float
 
     def trace(
         self, shares: list[_Share], slots: int, on_done: Callable[[int], None] | None
@@ -164,5 +170,5 @@ class _Run:
         job.stop = share.start + share.count
         job.max_interactions = self.max_interactions
         job.store_direct = int(self.store_direct)
-        job.branch_threshold = BRANCH_THRESHOLD
+        job.branch_threshold = self.branch_threshold
         return job

@@ -1,5 +1,6 @@
 """The command `nephroid`: what it prints, how it fails, and that it fails in one message."""
 
+import dataclasses
 import json
 import os
 import subprocess
@@ -30,7 +31,7 @@ def fails(capfd, arguments, *parts):
 def test_help_lists_every_command(capfd):
     assert main(["--help"]) == 0
     shown = capfd.readouterr().out
-    for command in ("render", "trace", "scenes", "glass", "info", "schema"):
+    for command in ("render", "trace", "explain", "scenes", "glass", "info", "schema"):
         assert f"\n    {command} " in shown
 
 
@@ -148,10 +149,22 @@ def test_info_tells_what_a_file_holds(capfd, tmp_path, synthetic_picture):
     shown = capfd.readouterr().out
     for text in (
         "12 × 8 pixels", "4, centred on 430 to 670 nm", "W m^-2 sr^-1 nm^-1", VERSION,
-        "CIE 1931 2 degree", "deposited         0.7 W", "photons           2000",
-        "max_interactions  256",
+        "CIE 1931 2 degree", "deposited           0.7 W", "photons             2000",
+        "max_interactions    256",
     ):  # fmt: skip
         assert text in shown
+
+
+def test_info_tells_what_was_left_out(capfd, tmp_path, synthetic_picture):
+    features = {"on": ["flats", "lenses"], "off": {"spheres": 0.0, "small": 1e-7}, "asked_for": []}
+    picture = dataclasses.replace(synthetic_picture, features=features)
+    picture.save_exr(tmp_path / "out.exr")
+    assert main(["info", str(tmp_path / "out.exr")]) == 0
+    lines = capfd.readouterr().out.splitlines()
+    at = lines.index("  features")
+    assert lines[at + 1].split(maxsplit=1) == ["on", "flats, lenses"]
+    assert lines[at + 2].split(maxsplit=1) == ["off", "spheres 0, small 1e-07"]
+    assert lines[at + 3] == "  accuracy"
 
 
 def test_info_gives_the_scene_back(capfd, tmp_path, synthetic_picture):

@@ -124,7 +124,7 @@ def test_a_scene_that_lacks_something_is_refused_before_anything_starts(
     def never(*_args, **_keywords):
         raise AssertionError("nothing must start")
 
-    for name in ("start_device", "compile_scene"):
+    for name in ("start_device", "choose_kernels"):
         monkeypatch.setattr(render_module, name, never)
     with pytest.raises(scenes.SceneError) as caught:
         sim.render(small_scene.model_copy(update=LACKING[what]))

@@ -28,6 +28,8 @@ from sim.settings import DEFAULTS, OPEN_PASSES, PRESETS, RenderSettings
         *[("threads", value) for value in (0, 4096)],
         *[("device", value) for value in ("gpu", "cuda", "cuda:x", "", None, "cpu ")],
         *[("precision", value) for value in ("double", "float16", 64)],
+        *[("features", value) for value in ("none", None, True, "full")],
+        *[("omission_tolerance", value) for value in (-1e-9, 0.6, math.nan, "0", False, None)],
     ],
 )
 def test_bad_values_are_refused_by_name(field, value):
@@ -42,6 +44,11 @@ def test_numpy_numbers_become_plain_ones():
     settings = RenderSettings(photons=np.int64(7), radius=np.float32(0.5), seed=np.uint8(3))
     assert (type(settings.photons), type(settings.radius), type(settings.seed)) == (int, float, int)
     assert json.loads(json.dumps(settings.reproducing()))["photons"] == 7
+
+
+def test_nothing_tolerated_is_a_tolerance():
+    assert RenderSettings(omission_tolerance=0).omission_tolerance == 0.0
+    assert RenderSettings().omission_tolerance == 1e-6
 
 
 def test_settings_are_keyword_only_and_frozen():

@@ -1,0 +1,44 @@
+"""The flags that shape compiled code: one for each feature that kernels can do without."""
+
+from dataclasses import dataclass
+
+__all__ = ["Features"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Features:
+    """What kernels are compiled to handle; hashable, since they are cached by it.
+
+    Every flag is the handle of one registered feature, and is on unless something is known that
+    allows to leave it out: `Features()` is the full kernel's.
+
+    Attributes:
+        spheres, flats, polyhedra, lenses: which shapes a ray can meet.
+        sellmeier, cauchy, tabulated: which dispersion formulas the media use.
+        air_conversion: some index is converted between "relative to air" and "to vacuum".
+        boundaries: light can meet a boundary between two media.
+        reflected_branches: boundaries can reflect.
+        dispersion: boundaries can part light by its wavelength.
+        undispersed_photons: photons that no dispersion has touched can be in the map.
+        direct_light: shadow rays find what comes straight from the lamps.
+        beams, sphere_lamps, rectangle_lamps: which extended lamps shadow rays can lead to.
+        media_count: how many media there are, the ambient one among them. A size, no feature.
+    """
+
+    spheres: bool = True
+    flats: bool = True
+    polyhedra: bool = True
+    lenses: bool = True
+    sellmeier: bool = True
+    cauchy: bool = True
+    tabulated: bool = True
+    air_conversion: bool = True
+    boundaries: bool = True
+    reflected_branches: bool = True
+    dispersion: bool = True
+    undispersed_photons: bool = True
+    direct_light: bool = True
+    beams: bool = True
+    sphere_lamps: bool = True
+    rectangle_lamps: bool = True
+    media_count: int = 1

@@ -1,0 +1,48 @@
+"""Features: the lamps that shadow rays can lead to."""
+
+from collections.abc import Callable
+
+import scenes
+from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
+
+__all__: list[str] = []
+
+
+def _some(one: str, many: str, kind: type) -> Callable[[Subject], Verdict]:
+    """Needed where any emitter is of this kind, and shadow rays look for it."""
+
+    def judge(subject: Subject) -> Verdict:
+        if subject.direct_light == "photons":
+            return null("no shadow rays")
+        count = sum(isinstance(emitter, kind) for emitter in subject.scene.emitters)
+        return needed(f"{count} {one if count == 1 else many}") if count else null(f"no {one}")
+
+    return judge
+
+
+register(Feature(
+    name="beams",
+    what="shadow rays against beams: the narrower of profile and cone",
+    judge=_some("beam", "beams", scenes.Beam),
+    flag="beams",
+    cost=Cost(1.00, "ball"),
+    kernel="camera",
+))  # fmt: skip
+
+register(Feature(
+    name="sphere lamps",
+    what="shadow rays to spherical lamps",
+    judge=_some("sphere lamp", "sphere lamps", scenes.SphereLamp),
+    flag="sphere_lamps",
+    cost=Cost(1.00, "prism"),
+    kernel="camera",
+))  # fmt: skip
+
+register(Feature(
+    name="rectangle lamps",
+    what="shadow rays to rectangular lamps",
+    judge=_some("rectangle lamp", "rectangle lamps", scenes.RectangleLamp),
+    flag="rectangle_lamps",
+    cost=Cost(1.00, "ball"),
+    kernel="camera",
+))  # fmt: skip

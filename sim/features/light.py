@@ -1,0 +1,115 @@
+"""Features: what happens to light at boundaries, and how receivers learn of it."""
+
+from scenes import Dielectric
+from sim.features.boundary_error import path_error, relative_variations
+from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
+
+__all__: list[str] = []
+
+
+def _judge_boundaries(subject: Subject) -> Verdict:
+    if subject.has_boundaries:
+        return needed("objects are made of media")
+    return null("no object is made of a medium")
+
+
+register(Feature(
+    name="boundaries",
+    what="light crosses from one medium into another: Snell, Fresnel",
+    judge=_judge_boundaries,
+    flag="boundaries",
+))  # fmt: skip
+
+
+def _judge_reflection(subject: Subject) -> Verdict:
+    """Nothing is reflected where η is 1 exactly. Else, at grazing incidence, everything is.
+
+    Media of the same formula and conversion have the same index to the last bit, and x/x = 1.
+    """
+    if not subject.has_boundaries:
+        return null("there is no boundary")
+    kinds = {
+        (medium.dispersion, power)
+        for medium, power in zip(subject.media, subject.air_powers, strict=True)
+    }
+    if len(kinds) == 1:
+        return null("all media have the index of the ambient one, exactly")
+    return needed("indices differ, and grazing light is reflected whole")
+
+
+register(Feature(
+    name="reflected branches",
+    what="boundaries reflect what Fresnel says, and all past the critical angle",
+    judge=_judge_reflection,
+    flag="reflected_branches",
+    cost=Cost(1.00, "ball"),
+    separable=True,
+))  # fmt: skip
+
+
+def _judge_dispersion(subject: Subject) -> Verdict | None:
+    """Left out where no index varies; where it hardly does, as far as the bound allows.
+
+    The bound is that of treating every wavelength as any other one of the film's.
+    """
+    if not subject.has_boundaries:
+        return null("there is no boundary")
+    if not any(subject.varying_media):
+        return null("no index depends on the wavelength")
+    variations = relative_variations(subject)
+    if variations is None:
+        return None
+    bound = sum(path_error(eta, variation) for eta, variation in variations)
+    largest = max(variation for _, variation in variations)
+    return Verdict(f"indices vary by {largest:.2g} over the film's range", min(bound, 1.0))
+
+
+register(Feature(
+    name="dispersion",
+    what="four colours a photon that meets glass, a camera path a band behind it",
+    judge=_judge_dispersion,
+    flag="dispersion",
+    cost=Cost(1.00, "ball"),
+    separable=True,
+))  # fmt: skip
+
+
+def _judge_undispersed(subject: Subject) -> Verdict:
+    """The map is empty of them where it leaves direct light out and all glass disperses."""
+    if subject.direct_light != "lamps":
+        return needed("the map holds direct light, or may do so")
+    varies = dict(zip(subject.media, subject.varying_media, strict=True))
+    ambient = subject.varying_media[0]
+    for item in subject.scene.objects:
+        if isinstance(item.material, Dielectric):
+            if not (ambient or varies.get(item.material.resolved(), False)):
+                return needed(f"light keeps its colours together in {item.name}")
+    return null("what is in the map has met glass, and all glass is dispersive")
+
+
+register(Feature(
+    name="undispersed photons",
+    what="photons that no dispersion has touched shine in every band",
+    judge=_judge_undispersed,
+    flag="undispersed_photons",
+    cost=Cost(1.00, "prism"),
+    kernel="camera",
+    separable=True,
+))  # fmt: skip
+
+
+def _judge_direct_light(subject: Subject) -> Verdict:
+    if subject.direct_light == "photons":
+        return null('direct light is in the map: direct_light = "photons"')
+    return needed("receivers may see lamps")
+
+
+register(Feature(
+    name="direct light",
+    what="shadow rays from receivers to the lamps",
+    judge=_judge_direct_light,
+    flag="direct_light",
+    cost=Cost(1.00, "prism"),
+    kernel="camera",
+    separable=True,
+))  # fmt: skip
