@@ -80,7 +80,9 @@ class Film:
         n = self.rounds
         if n < 2:
             return np.full(squares.shape, np.nan)
-        return np.sqrt(squares / (n * (n - 1.0)))
+        # In place: of a large picture each copy is half a gigabyte.
+        error = squares / (n * (n - 1.0))
+        return np.sqrt(error, out=error)
 
 
 def create_film(
