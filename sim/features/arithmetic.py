@@ -29,7 +29,7 @@ register(Feature(
     name="double precision",
     what="tracing in float64, not in float32",
     judge=_judge_double,
-    cost=Cost(1.00, "ball"),
+    cost=Cost(1.08, "ball"),
     separable=True,
     switch=_switch,
 ))  # fmt: skip

@@ -25,7 +25,7 @@ register(Feature(
     what="shadow rays against beams: the narrower of profile and cone",
     judge=_some("beam", "beams", scenes.Beam),
     flag="beams",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(1.04, "ball"),
     kernel="camera",
 ))  # fmt: skip
 
@@ -34,7 +34,7 @@ register(Feature(
     what="shadow rays to spherical lamps",
     judge=_some("sphere lamp", "sphere lamps", scenes.SphereLamp),
     flag="sphere_lamps",
-    cost=Cost(1.00, "prism"),
+    cost=Cost(1.03, "prism"),
     kernel="camera",
 ))  # fmt: skip
 
@@ -43,6 +43,6 @@ register(Feature(
     what="shadow rays to rectangular lamps",
     judge=_some("rectangle lamp", "rectangle lamps", scenes.RectangleLamp),
     flag="rectangle_lamps",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(0.99, "ball"),
     kernel="camera",
 ))  # fmt: skip

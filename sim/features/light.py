@@ -42,7 +42,7 @@ register(Feature(
     what="boundaries reflect what Fresnel says, and all past the critical angle",
     judge=_judge_reflection,
     flag="reflected_branches",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(2.00, "ball"),
     separable=True,
 ))  # fmt: skip
 
@@ -69,7 +69,7 @@ register(Feature(
     what="four colours a photon that meets glass, a camera path a band behind it",
     judge=_judge_dispersion,
     flag="dispersion",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(2.05, "ball"),
     separable=True,
 ))  # fmt: skip
 
@@ -92,7 +92,7 @@ register(Feature(
     what="photons that no dispersion has touched shine in every band",
     judge=_judge_undispersed,
     flag="undispersed_photons",
-    cost=Cost(1.00, "prism"),
+    cost=Cost(1.01, "prism"),
     kernel="camera",
     separable=True,
 ))  # fmt: skip
@@ -109,7 +109,7 @@ register(Feature(
     what="shadow rays from receivers to the lamps",
     judge=_judge_direct_light,
     flag="direct_light",
-    cost=Cost(1.00, "prism"),
+    cost=Cost(1.18, "prism"),
     kernel="camera",
     separable=True,
 ))  # fmt: skip

@@ -37,7 +37,7 @@ register(Feature(
     what="indices from tables, by cubics",
     judge=_some(Tabulated),
     flag="tabulated",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(1.01, "ball"),
 ))  # fmt: skip
 
 

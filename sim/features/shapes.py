@@ -23,7 +23,7 @@ register(Feature(
     what="rays meet spheres",
     judge=_some("sphere", "spheres", scenes.Sphere),
     flag="spheres",
-    cost=Cost(1.00, "prism"),
+    cost=Cost(1.06, "prism"),
 ))  # fmt: skip
 
 register(Feature(
@@ -38,7 +38,7 @@ register(Feature(
     what="rays meet boxes, prisms and other convex solids",
     judge=_some("polyhedron", "polyhedra", scenes.Box, scenes.Prism, scenes.Polyhedron),
     flag="polyhedra",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(1.02, "ball"),
 ))  # fmt: skip
 
 register(Feature(
@@ -46,5 +46,5 @@ register(Feature(
     what="rays meet lenses, exactly: conic caps and a rim",
     judge=_some("lens", "lenses", scenes.Lens),
     flag="lenses",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(1.06, "ball"),
 ))  # fmt: skip
