@@ -52,7 +52,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--error-map", type=png_file, metavar="OUT.png",
                         help="also draw each pixel's relative error")
     parser.add_argument("--radius", type=float, metavar="M",
-                        help="gather radius of the first pass [m] (default: about one pixel)")
+                        help="gather radius of the first pass [m] (default: two pixels' width)")
+    parser.add_argument("--alpha", type=float, default=2 / 3, metavar="A",
+                        help="how slowly the radius shrinks from pass to pass; 1: not at all "
+                             "(default: 2/3)")
     parser.add_argument("--precision", choices=("float32", "float64"),
                         help="arithmetic of tracing (default: float64 on cpu, else float32)")
     parser.add_argument("--seed", type=count, default=0, metavar="N",
