@@ -4,7 +4,7 @@ The scene is recentred on its finite objects, so that a bench a kilometre from i
 is traced with the digits of one at the origin. Results that carry positions add `origin` back.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +15,7 @@ import warp as wp
 import scenes
 from scenes.frames import frame_about
 from sim.features import Features, Subject, find_features
+from sim.method import Method
 from sim.optics.dispersion import DISPERSION_COEFFICIENTS
 from sim.precision import precision_types
 from sim.scene_media import collect_media
@@ -105,6 +106,7 @@ def compile_scene(
     precision: str = "float64",
     device: str = "cpu",
     features: Features | None = None,
+    method: Method | None = None,
 ) -> CompiledScene:
     """Lay `scene` out as device arrays.
 
@@ -113,11 +115,14 @@ def compile_scene(
         precision: what the kernels compute with.
         device: where the arrays live.
         features: what the kernels must handle; None: all that could change anything.
+        method: how light is followed; None: as a rendering does, or as `features` say.
     """
     origin = find_origin(scene)
     media, medium_of, air_powers = collect_media(scene)
     if features is None:
         features = find_features(scene, media, air_powers)
+    if method is not None:
+        features = replace(features, method=method)
     structs = make_scene_structs(precision)
     data = structs.Scene()
     places = _fill_shapes(data, scene, origin, precision, device)

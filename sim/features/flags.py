@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from sim.method import DEFAULT_METHOD, Method
+
 __all__ = ["Features"]
 
 
@@ -23,6 +25,7 @@ class Features:
         direct_light: shadow rays find what comes straight from the lamps.
         beams, sphere_lamps, rectangle_lamps: which extended lamps shadow rays can lead to.
         media_count: how many media there are, the ambient one among them. A size, no feature.
+        method: how light is followed. A choice of the caller's, no feature.
     """
 
     spheres: bool = True
@@ -42,3 +45,4 @@ class Features:
     sphere_lamps: bool = True
     rectangle_lamps: bool = True
     media_count: int = 1
+    method: Method = DEFAULT_METHOD
