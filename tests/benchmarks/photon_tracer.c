@@ -58,7 +58,7 @@ typedef struct {
 typedef struct {
     Vec centre, u, v, normal;
     double half_u, half_v, radius, photons;
-    const double *cdf;
+    const double *cdf; /* NULL: even */
     int kind;
 } Target;
 typedef struct { double wavelength_nm, width_nm, density_low, density_high; } Segment;
@@ -72,7 +72,7 @@ typedef struct {
     int sphere_count, flat_count, plane_count, polyhedron_count;
     int body_count, media_count, emitter_count, target_count, segment_count, stream_count, cdf_count;
     uint32_t sobol[DIMENSIONS * SOBOL_ROW];
-    int max_interactions, slots_per_photon, colours;
+    int max_interactions, slots_per_photon, colours, store_direct;
     double branch_threshold;
 } Scene;
 
@@ -133,6 +133,20 @@ static inline void sample_disk(double u0, double u1, double *x, double *y) {
     }
 }
 
+/* The numbers that sample_disk turns into (x, y). */
+static inline void disk_square(double x, double y, double *u0, double *u1) {
+    double r = sqrt(x * x + y * y), a = 0.0, b = 0.0;
+    if (r > 0.0 && fabs(x) > fabs(y)) {
+        a = copysign(r, x);
+        b = a * (4.0 / PI) * atan(y / x);
+    } else if (r > 0.0) {
+        b = copysign(r, y);
+        a = b * (4.0 / PI) * atan(x / y);
+    }
+    *u0 = 0.5 + 0.5 * a;
+    *u1 = 0.5 + 0.5 * b;
+}
+
 static inline Vec sample_cone(double u0, double u1, double sin2_half) {
     double x, y;
     sample_disk(u0, u1, &x, &y);
@@ -152,10 +166,15 @@ static inline Vec sample_hemisphere(double u0, double u1) {
     return vec(x, y, sqrt(larger(1.0 - x * x - y * y, 0.0)));
 }
 
-static inline Vec to_world(Vec local, Vec axis) {
+static inline void frame_of(Vec axis, Vec *u, Vec *v) {
     double sign = copysign(1.0, axis.z), a = -1.0 / (sign + axis.z), b = axis.x * axis.y * a;
-    Vec u = vec(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);
-    Vec v = vec(b, sign + axis.y * axis.y * a, -axis.y);
+    *u = vec(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);
+    *v = vec(b, sign + axis.y * axis.y * a, -axis.y);
+}
+
+static inline Vec to_world(Vec local, Vec axis) {
+    Vec u, v;
+    frame_of(axis, &u, &v);
     return renormalize(along(along(scale(u, local.x), v, local.y), axis, local.z));
 }
 
@@ -205,6 +224,12 @@ static inline double cell_density(const double *cdf, double s, double t) {
     return (cdf[i + 1] - cdf[i]) * (row[j + 1] - row[j]) * (AIM_CELLS * AIM_CELLS);
 }
 
+/* The point of the unit square where a distribution over its cells reaches (u0, u1). */
+static inline void invert_square(const double *cdf, double *u0, double *u1) {
+    int row = invert_cells(cdf, *u0, u0);
+    invert_cells(cdf + (row + 1) * (AIM_CELLS + 1), *u1, u1);
+}
+
 static inline double area_density(
     const Emitter *emitter, const Target *target, Vec origin, Vec direction, int drawn
 ) {
@@ -238,12 +263,17 @@ static inline double target_density(
     if (target->kind == AIM_AREA) return area_density(emitter, target, origin, direction, drawn);
     if (target->kind == AIM_BASE) return own_density(emitter, direction);
     Vec way = sub(target->centre, emitter->kind == SPHERE_LAMP ? emitter->centre : origin);
-    double sin2_half = cone_of(target, way);
+    double sin2_half = cone_of(target, way), density = 1.0 / (4.0 * PI * sin2_half), s, t;
+    Vec axis = sin2_half < 1.0 ? normalize(way) : vec(0.0, 0.0, 1.0), u, v;
     if (sin2_half < 1.0 && !drawn) {
-        Vec chord = sub(direction, normalize(way));
+        Vec chord = sub(direction, axis);
         if (dot(chord, chord) > 4.0 * sin2_half) return 0.0;
     }
-    return 1.0 / (4.0 * PI * sin2_half);
+    if (!target->cdf) return density;
+    frame_of(axis, &u, &v);
+    double k = 1.0 / sqrt(larger(2.0 * sin2_half * (1.0 + dot(direction, axis)), 1e-30));
+    disk_square(dot(direction, u) * k, dot(direction, v) * k, &s, &t);
+    return density * cell_density(target->cdf, s, t);
 }
 
 static inline Vec sample_direction(
@@ -277,11 +307,8 @@ static inline void sample_line(
         origin = on_rectangle(origin, emitter->u, emitter->v, emitter->half_u, emitter->half_v,
                               u[3], u[4]);
     if (target->kind == AIM_AREA) {
-        double s, t;
-        int row = invert_cells(target->cdf, u[0], &s);
-        invert_cells(target->cdf + (row + 1) * (AIM_CELLS + 1), u[1], &t);
         Vec point = on_rectangle(target->centre, target->u, target->v, target->half_u,
-                                 target->half_v, s, t);
+                                 target->half_v, u[0], u[1]);
         if (sphere)
             origin = on_sphere(emitter, normalize(sub(point, emitter->centre)), u[3], u[4]);
         ray->direction = normalize(sub(point, origin));
@@ -302,6 +329,7 @@ static inline double emit(const Scene *scene, const Stream *stream, uint32_t i, 
     for (int d = 0; d < DIMENSIONS; d++)
         u[d] = sobol_uniform(scene->sobol + d * SOBOL_ROW, i, stream->seeds[d], low_bits[d]);
 
+    if (target->cdf) invert_square(target->cdf, &u[0], &u[1]);
     ray->prim = ray->face = -1;
     *u_wavelength = u[2];
     if (emitter->kind == BEAM) {
@@ -310,7 +338,8 @@ static inline double emit(const Scene *scene, const Stream *stream, uint32_t i, 
         ray->origin = along(along(emitter->centre, emitter->u, x * emitter->half_u), emitter->v,
                             y * emitter->half_v);
         ray->direction = to_world(sample_cone(u[3], u[4], emitter->sin2_half), emitter->axis);
-        return emitter->flux / target->photons;
+        return emitter->flux / target->photons
+             / (target->cdf ? cell_density(target->cdf, u[0], u[1]) : 1.0);
     }
     sample_line(emitter, target, u, ray);
     if (emitter->kind == SPHERE_LAMP && dot(sub(ray->origin, emitter->centre), ray->direction) <= 0.0)
@@ -512,8 +541,9 @@ static void follow(const Scene *scene, const Stream *stream, Ray ray, Hit hit, d
             Vec point = along(ray.origin, ray.direction, hit.t);
             if (material == LAMBERTIAN) {
                 books->deposited += flux;
-                store(photons, point, ray.direction, wavelength_nm, flux,
-                      hit.prim << 14 | hit.face << 1 | side, history, stream->emitter);
+                if (scene->store_direct || (history & 0xFFFFF) > 0)
+                    store(photons, point, ray.direction, wavelength_nm, flux,
+                          hit.prim << 14 | hit.face << 1 | side, history, stream->emitter);
             } else if (material == ABSORBER) {
                 books->absorbed += flux;
             } else {
@@ -657,7 +687,8 @@ static void read_scene(const char *path, Scene *scene) {
     READ(targets, target_count, 18,
          a->kind = take_int(&p); a->centre = take_vec(&p); a->u = take_vec(&p); a->v = take_vec(&p);
          a->normal = take_vec(&p); a->half_u = take(&p); a->half_v = take(&p); a->radius = take(&p);
-         a->cdf = scene->cdf + take_int(&p); a->photons = take(&p););
+         int first_cdf = take_int(&p); a->cdf = first_cdf < 0 ? NULL : scene->cdf + first_cdf;
+         a->photons = take(&p););
     READ(segments, segment_count, 4,
          a->wavelength_nm = take(&p); a->width_nm = take(&p); a->density_low = take(&p);
          a->density_high = take(&p););
@@ -669,11 +700,12 @@ static void read_scene(const char *path, Scene *scene) {
     double *sobol = read_section(file, DIMENSIONS * SOBOL_ROW, &rows);
     for (int k = 0; k < DIMENSIONS * SOBOL_ROW; k++) scene->sobol[k] = (uint32_t)sobol[k];
     free(sobol);
-    double *limits = read_section(file, 4, &rows);
+    double *limits = read_section(file, 5, &rows);
     scene->max_interactions = (int)limits[0];
     scene->branch_threshold = limits[1];
     scene->slots_per_photon = (int)limits[2];
     scene->colours = (int)limits[3];
+    scene->store_direct = (int)limits[4];
     free(limits);
     fclose(file);
     if (scene->media_count > MAX_MEDIA) { fprintf(stderr, "photon_tracer: too many media\n"); exit(1); }

@@ -35,7 +35,8 @@ from sim.device import start_device  # noqa: E402
 from sim.image.camera import compile_camera  # noqa: E402
 from sim.image.survey import survey_view  # noqa: E402
 from sim.photons import tracing  # noqa: E402
-from sim.photons.lamps import Lamps, compile_lamps  # noqa: E402
+from sim.photons.guided_lamps import compile_guided_lamps  # noqa: E402
+from sim.photons.lamps import Lamps  # noqa: E402
 from sim.photons.photon_path import COLOURS  # noqa: E402
 from sim.sampling.counter import fold_key  # noqa: E402
 from sim.sampling.sobol import DIMENSIONS, sobol_tables  # noqa: E402
@@ -102,6 +103,7 @@ def sections(compiled: CompiledScene, lamps: Lamps) -> list[FloatArray]:
                     tracing.BRANCH_THRESHOLD,
                     tracing._SLOTS_PER_PHOTON,
                     int(COLOURS),
+                    0,  # of what has met no glass, nothing is stored
                 ]
             ]
         ),
@@ -128,14 +130,17 @@ class Nephroid:
         edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
         camera = compile_camera(self.compiled, scene.camera, scene.film)
         survey = survey_view(self.compiled, camera, float(edges_nm.mean()))
-        self.lamps = compile_lamps(self.compiled, edges_nm, photons, view=survey)
+        self.lamps = compile_guided_lamps(
+            self.compiled, edges_nm, photons, view=survey, seed=SEED,
+            max_interactions=MAX_INTERACTIONS, threads=1, total=photons,
+        )
         self.photons = sum(stream.photons for stream in self.lamps.streams)
 
     def trace(self, threads: int) -> tracing.PhotonBatch:
         """Trace the pass."""
         return tracing.trace_photons(
             self.compiled, self.lamps, seed=SEED, pass_index=PASS,
-            max_interactions=MAX_INTERACTIONS, threads=threads,
+            max_interactions=MAX_INTERACTIONS, threads=threads, store_direct=False,
         )
 
     def totals(self) -> FloatArray:
