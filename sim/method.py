@@ -36,7 +36,7 @@ class Method:
             with its part of the flux; "roulette" follows one of them with all of it, chosen with
             the probability of its part.
         aiming: "aimed" sends photons where they are worth most, with weights that make up for
-            it; "unaimed" sends them as the lamps radiate.
+            it; "unaimed" sends them as the lamps radiate, each with the same flux.
         fresnel: reflectance at boundaries: Fresnel's formulas, Schlick's approximation, or none,
             which lets through whatever is not reflected totally.
 

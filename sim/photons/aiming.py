@@ -15,7 +15,7 @@ import scenes
 from sim.photons.lamp_structs import AIM_AREA, AIM_BASE, AIM_CELLS, AIM_CONE
 from sim.scene_data import CompiledScene
 
-__all__ = ["Aim", "Guide", "View", "cells_to_distribution", "find_aims", "flux_to_glass"]
+__all__ = ["Aim", "Guide", "View", "cells_to_distribution", "plan_photons"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -31,6 +31,11 @@ what the camera barely sees may still be somebody's measurement."""
 
 UNIFORM_PART = 0.2
 """Part of a receiver's photons spread over all of it; the rest goes where the camera looks."""
+
+
+EQUAL_SHARE = 0.4
+"""Share of the photons that is divided equally among the emitters, whatever their flux, so that a
+faint beam beside a bright lamp is not made of a handful of photons."""
 
 
 class View(Protocol):
@@ -80,7 +85,7 @@ class Aim:
 
 @dataclass(frozen=True)
 class Guide:
-    """How photons are best divided, as a pilot has found.
+    """How photons are divided among lamps and aims.
 
     Attributes:
         shares: of each lamp that shines, among all photons.
@@ -89,6 +94,31 @@ class Guide:
 
     shares: tuple[float, ...]
     aims: tuple[tuple[Aim, ...], ...]
+
+
+def plan_photons(
+    compiled: CompiledScene, emitters: list[tuple[Any, float]], view: View | None, *, direct: bool
+) -> Guide:
+    """Divide photons as well as can be told without having traced any.
+
+    Args:
+        compiled: the scene.
+        emitters: the lamps that shine, each with its flux [W].
+        view: what the camera sees of each object; None: no camera.
+        direct: whether what comes straight from a lamp is worth photons; else only glass is.
+    """
+    aimed = tuple(tuple(find_aims(compiled, emitter, view)) for emitter, _ in emitters)
+    fluxes = [flux for _, flux in emitters]
+    if compiled.features.method.aiming == "unaimed":
+        return Guide(tuple(fluxes), aimed)
+    if not direct:
+        fluxes = [
+            flux * flux_to_glass(emitter, aims, compiled.to_local(emitter.position))
+            for (emitter, flux), aims in zip(emitters, aimed, strict=True)
+        ]
+    total = sum(fluxes) or 1.0
+    equal = EQUAL_SHARE / len(fluxes)
+    return Guide(tuple(equal + (1.0 - EQUAL_SHARE) * flux / total for flux in fluxes), aimed)
 
 
 def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[Aim]:
@@ -124,7 +154,7 @@ def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[
     return aims
 
 
-def flux_to_glass(emitter: Any, aims: list[Aim], centre: FloatArray) -> float:
+def flux_to_glass(emitter: Any, aims: tuple[Aim, ...], centre: FloatArray) -> float:
     """About how much of a lamp's flux meets glass that can be aimed at, as a fraction.
 
     Args:

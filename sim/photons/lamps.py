@@ -8,7 +8,7 @@ import numpy.typing as npt
 import warp as wp
 
 import scenes
-from sim.photons.aiming import Aim, Guide, View, find_aims, flux_to_glass
+from sim.photons.aiming import Aim, Guide, View, plan_photons
 from sim.photons.lamp_structs import (
     AIM_CELLS,
     BEAM,
@@ -27,9 +27,6 @@ from spectra import EmissionSpectrum
 __all__ = ["Lamps", "Stream", "compile_lamps"]
 
 FloatArray = npt.NDArray[np.float64]
-
-EQUAL_SHARE = 0.4
-"""Share of the photons that is divided equally among the emitters, whatever their flux."""
 
 
 @dataclass(frozen=True)
@@ -87,35 +84,17 @@ def compile_lamps(
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.
     """
-    scene = compiled.scene
-    shining = [
-        (emitter, *part)
-        for emitter in scene.emitters
-        if (part := _film_part(emitter, edges_nm)) is not None
-    ]
-    if not shining:
-        allowed = f"an emitter that shines between {edges_nm[0]:g} and {edges_nm[-1]:g} nm"
-        problem = scenes.Problem("emitters", f"none gives light; it needs {allowed}", None, allowed)
-        raise scenes.SceneError(scene.source_name, [problem])
+    shining = _find_shining(compiled.scene, edges_nm)
     if guide is None:
-        aimed = [find_aims(compiled, emitter, view) for emitter, _, _ in shining]
-        useful = [flux for _, _, flux in shining]
-        if not direct and compiled.features.method.aiming == "aimed":
-            useful = [
-                flux * flux_to_glass(emitter, aims, compiled.to_local(emitter.position))
-                for (emitter, _, flux), aims in zip(shining, aimed, strict=True)
-            ]
-        counts = _share(photons, _emitter_shares(useful))
-    else:
-        aimed = [list(one) for one in guide.aims]
-        counts = _share(photons, list(guide.shares))
+        emitters = [(emitter, flux) for emitter, _, flux in shining]
+        guide = plan_photons(compiled, emitters, view, direct=direct)
+    counts = _share(photons, list(guide.shares))
     tables = _Tables()
-    for (emitter, spectrum, flux), aims, count in zip(shining, aimed, counts, strict=True):
+    for (emitter, spectrum, flux), aims, count in zip(shining, guide.aims, counts, strict=True):
         tables.add(_emitter_row(compiled, emitter), spectrum, flux, aims, count)
     flux = sum(flux for _, _, flux in shining)
     spectra = tuple(spectrum for _, spectrum, _ in shining)
-    found = tuple(tuple(aims) for aims in aimed)
-    return Lamps(tables.on_device(compiled), tuple(tables.streams), flux, spectra, found)
+    return Lamps(tables.on_device(compiled), tuple(tables.streams), flux, spectra, guide.aims)
 
 
 class _Tables:
@@ -133,7 +112,7 @@ class _Tables:
         geometry: tuple[Any, ...],
         spectrum: EmissionSpectrum,
         flux: float,
-        aims: list[Aim],
+        aims: tuple[Aim, ...],
         photons: int,
     ) -> None:
         """Add a lamp with its spectrum and its aims, among which `photons` are shared out."""
@@ -170,6 +149,22 @@ class _Tables:
         return data
 
 
+def _find_shining(
+    scene: scenes.Scene, edges_nm: FloatArray
+) -> list[tuple[Any, EmissionSpectrum, float]]:
+    """The emitters that shine inside the film's range, each with what it gives there."""
+    shining = [
+        (emitter, *part)
+        for emitter in scene.emitters
+        if (part := _film_part(emitter, edges_nm)) is not None
+    ]
+    if not shining:
+        allowed = f"an emitter that shines between {edges_nm[0]:g} and {edges_nm[-1]:g} nm"
+        problem = scenes.Problem("emitters", f"none gives light; it needs {allowed}", None, allowed)
+        raise scenes.SceneError(scene.source_name, [problem])
+    return shining
+
+
 def _film_part(
     emitter: Any, edges_nm: FloatArray
 ) -> tuple[EmissionSpectrum, float] | None:
@@ -180,15 +175,6 @@ def _film_part(
     if inside <= 0.0:
         return None
     return spectrum.restricted(low, high), emitter.flux * inside / spectrum.total
-
-
-def _emitter_shares(fluxes: list[float]) -> list[float]:
-    """Each emitter's share of the photons: by useful flux, and a part of them equally.
-
-    So a faint beam beside a bright lamp is not made of a handful of photons.
-    """
-    total = sum(fluxes) or 1.0
-    return [EQUAL_SHARE / len(fluxes) + (1.0 - EQUAL_SHARE) * flux / total for flux in fluxes]
 
 
 def _share(total: int, weights: list[float]) -> list[int]:
