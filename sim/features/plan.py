@@ -66,7 +66,9 @@ class FeaturePlan:
     @property
     def features(self) -> Features:
         """The flags of what is on."""
-        flags = {one.feature.flag: one.on for one in self.decisions if one.feature.flag}
+        flags: dict[str, Any] = {
+            one.feature.flag: one.on for one in self.decisions if one.feature.flag
+        }
         return Features(**flags, media_count=self.media_count)
 
     def complete(self, reason: str) -> "FeaturePlan":
