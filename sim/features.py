@@ -7,6 +7,7 @@ left out of its code; whatever is not known to be useless stays in.
 from dataclasses import dataclass
 
 import scenes
+from sim.method import DEFAULT_METHOD, Method
 from spectra import Cauchy, Medium, Sellmeier, Tabulated
 
 __all__ = ["Features", "find_features"]
@@ -21,6 +22,7 @@ class Features:
         sellmeier, cauchy, tabulated: which dispersion formulas the media use.
         air_conversion: some index is converted between "relative to air" and "to vacuum".
         media_count: how many media there are, the ambient one among them.
+        method: how light is followed.
     """
 
     spheres: bool
@@ -32,9 +34,16 @@ class Features:
     tabulated: bool
     air_conversion: bool
     media_count: int
+    method: Method = DEFAULT_METHOD
 
 
-def find_features(scene: scenes.Scene, media: list[Medium], air_powers: list[int]) -> Features:
+def find_features(
+    scene: scenes.Scene,
+    media: list[Medium],
+    air_powers: list[int],
+    *,
+    method: Method = DEFAULT_METHOD,
+) -> Features:
     """Derive the feature set of `scene` with its resolved `media` and their air conversions."""
     shapes = [item.shape for item in scene.objects]
     formulas = [medium.dispersion for medium in media]
@@ -55,4 +64,5 @@ def find_features(scene: scenes.Scene, media: list[Medium], air_powers: list[int
         tabulated=any_formula(Tabulated),
         air_conversion=any(air_powers),
         media_count=len(media),
+        method=method,
     )

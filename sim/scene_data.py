@@ -15,6 +15,7 @@ import warp as wp
 import scenes
 from scenes.frames import frame_about
 from sim.features import Features, find_features
+from sim.method import DEFAULT_METHOD, Method
 from sim.optics.dispersion import DISPERSION_COEFFICIENTS
 from sim.precision import precision_types
 from sim.scene_structs import (
@@ -86,7 +87,11 @@ def find_origin(scene: scenes.Scene) -> FloatArray:
 
 
 def compile_scene(
-    scene: scenes.Scene, *, precision: str = "float64", device: str = "cpu"
+    scene: scenes.Scene,
+    *,
+    precision: str = "float64",
+    device: str = "cpu",
+    method: Method = DEFAULT_METHOD,
 ) -> CompiledScene:
     """Lay `scene` out as device arrays.
 
@@ -94,10 +99,11 @@ def compile_scene(
         scene: a validated scene.
         precision: what the kernels compute with.
         device: where the arrays live.
+        method: how light is followed.
     """
     origin = find_origin(scene)
     media, medium_of, air_powers = _collect_media(scene)
-    features = find_features(scene, media, air_powers)
+    features = find_features(scene, media, air_powers, method=method)
     structs = make_scene_structs(precision)
     data = structs.Scene()
     places = _fill_shapes(data, scene, origin, precision, device)

@@ -26,6 +26,7 @@ from sim.optics.dielectric import (
     reflect,
     refract,
     renormalize,
+    schlick_reflectance,
     sin2_theta_t,
 )
 from sim.optics.dispersion import air_index, cauchy_index, sellmeier_index, tabulated_index
@@ -204,9 +205,14 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         if sin2_t >= real(1.0):
             return 1, real(1.0), reflected, reflected
         cos_theta_t = wp.sqrt(real(1.0) - sin2_t)
-        r_s, r_p = fresnel_reflectance(cos_theta_i, cos_theta_t, eta)
+        reflectance = real(0.0)
+        if wp.static(features.method.fresnel == "exact"):
+            r_s, r_p = fresnel_reflectance(cos_theta_i, cos_theta_t, eta)
+            reflectance = real(0.5) * (r_s + r_p)
+        if wp.static(features.method.fresnel == "schlick"):
+            reflectance = schlick_reflectance(cos_theta_i, cos_theta_t, eta)
         refracted = refract(direction, normal, cos_theta_i, cos_theta_t, eta)
-        return 0, real(0.5) * (r_s + r_p), reflected, refracted
+        return 0, reflectance, reflected, refracted
 
     @wp.func
     def scatter(scene: scene_type, ray: ray_type, hit: hit_type, indices: indices_type):

@@ -121,13 +121,17 @@ def _trace_passes(
     max_interactions: int = 256,
     seed: int = 0,
     threads: int = 2,
+    method: dict[str, Any] | None = None,
 ) -> Passes:
     from sim.device import start_device
+    from sim.method import Method
     from sim.photons.lamps import compile_lamps
     from sim.photons.tracing import trace_photons
     from sim.scene_data import compile_scene
 
-    compiled = compile_scene(scene, precision=precision, device=start_device("cpu"))
+    compiled = compile_scene(
+        scene, precision=precision, device=start_device("cpu"), method=Method(**(method or {}))
+    )
     view = _survey(compiled) if aimed else None
     lamps = compile_lamps(compiled, scene.film.edges_nm, photons, view=view)
     batches = [

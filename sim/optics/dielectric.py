@@ -6,13 +6,22 @@ Directions point where light goes; `normal` points to the side the light comes f
 References:
     Born & Wolf (1999), *Principles of Optics*, 7th ed., §1.5.2 eq. (8) Snell, (21) Fresnel.
     Heckbert (1989), "Writing a ray tracer", in *An Introduction to Ray Tracing*: vector form.
+    Schlick (1994), "An inexpensive BRDF model for physically-based rendering", Comput. Graph.
+    Forum 13(3), eq. (15).
 """
 
 from typing import Any
 
 import warp as wp
 
-__all__ = ["fresnel_reflectance", "reflect", "refract", "renormalize", "sin2_theta_t"]
+__all__ = [
+    "fresnel_reflectance",
+    "reflect",
+    "refract",
+    "renormalize",
+    "schlick_reflectance",
+    "sin2_theta_t",
+]
 
 
 @wp.func
@@ -41,6 +50,23 @@ def fresnel_reflectance(cos_theta_i: Any, cos_theta_t: Any, eta: Any):
     r_s = (eta * cos_theta_i - cos_theta_t) / (eta * cos_theta_i + cos_theta_t)
     r_p = (cos_theta_i - eta * cos_theta_t) / (cos_theta_i + eta * cos_theta_t)
     return r_s * r_s, r_p * r_p
+
+
+@wp.func
+def schlick_reflectance(cos_theta_i: Any, cos_theta_t: Any, eta: Any):
+    """Reflectance R₀ + (1 − R₀)(1 − cosθ)⁵ of light without polarisation (Schlick 1994, eq. 15).
+
+    θ is the angle on the side of the lower index, where grazing light is reflected whole; from
+    within the denser medium that is the transmitted angle, so that R is the same both ways.
+    """
+    one = type(eta)(1.0)
+    r = (eta - one) / (eta + one)
+    r_0 = r * r
+    x = one - cos_theta_i
+    if eta > one:
+        x = one - cos_theta_t
+    x2 = x * x
+    return r_0 + (one - r_0) * x2 * x2 * x
 
 
 @wp.func

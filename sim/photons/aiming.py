@@ -78,7 +78,7 @@ def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[
         emitter: one of its emitters.
         view: what the camera sees of each object; None: no camera.
     """
-    if isinstance(emitter, scenes.Beam):
+    if isinstance(emitter, scenes.Beam) or compiled.features.method.aiming == "unaimed":
         return [_base(1.0)]
     # A spherical lamp draws cones from its centre: what its rays can hit is larger by its radius.
     margin = emitter.radius if isinstance(emitter, scenes.SphereLamp) else 0.0

@@ -27,7 +27,6 @@ from sim.photons.lamp_structs import (
     SPOT,
     make_lamp_structs,
 )
-from sim.sampling.counter import hash64
 from sim.sampling.directions import (
     sample_cone,
     sample_cosine_hemisphere,
@@ -35,10 +34,11 @@ from sim.sampling.directions import (
     sample_sphere,
     to_world,
 )
-from sim.sampling.sobol import make_sobol_uniform
+from sim.sampling.photon_numbers import make_photon_numbers
 from sim.scene_structs import make_ray_structs
 
 __all__ = ["make_emission", "make_wavelength_function"]
+
 
 @functools.cache
 def make_wavelength_function(precision: str) -> object:
@@ -147,8 +147,12 @@ def make_line_function(precision: str) -> object:
 
 
 @functools.cache
-def make_emission(precision: str) -> object:
+def make_emission(precision: str, sampler: str = "sobol") -> object:
     """Device function `emit(lamps, emitter, target, seed_row, index, key)`.
+
+    Args:
+        precision: of rays and fluxes.
+        sampler: what photons are drawn from, see `sim.method`.
 
     Returns:
         The function, which returns (Ray, u, flux [W]) of photon `index` of the sequence that
@@ -161,7 +165,7 @@ def make_emission(precision: str) -> object:
     own_density, target_density = densities.own_density, densities.target_density
     sample_direction = make_direction_function(precision)
     sample_line = make_line_function(precision)
-    sobol_uniform = make_sobol_uniform(precision)
+    photon_numbers = make_photon_numbers(precision, sampler)
 
     @wp.func
     def emit(
@@ -174,19 +178,7 @@ def make_emission(precision: str) -> object:
     ):
         emitter = lamps.emitters[emitter_row]
         target = lamps.targets[target_row]
-        low = hash64(key, wp.uint64(index) * wp.uint64(2))
-        low2 = hash64(key, wp.uint64(index) * wp.uint64(2) + wp.uint64(1))
-        bits0 = wp.uint32(low)
-        bits1 = wp.uint32(low >> wp.uint64(21))
-        bits2 = wp.uint32(low >> wp.uint64(42))
-        bits3 = wp.uint32(low2)
-        bits4 = wp.uint32(low2 >> wp.uint64(21))
-        u0 = sobol_uniform(lamps.sobol, index, 0, lamps.seeds[seed_row], bits0)
-        u1 = sobol_uniform(lamps.sobol, index, 1, lamps.seeds[seed_row + 1], bits1)
-        u2 = sobol_uniform(lamps.sobol, index, 2, lamps.seeds[seed_row + 2], bits2)
-        u3 = sobol_uniform(lamps.sobol, index, 3, lamps.seeds[seed_row + 3], bits3)
-        u4 = sobol_uniform(lamps.sobol, index, 4, lamps.seeds[seed_row + 4], bits4)
-
+        u0, u1, u2, u3, u4 = photon_numbers(lamps.sobol, lamps.seeds, seed_row, index, key)
         ray = ray_type()
         ray.prim = -1
         ray.face = -1

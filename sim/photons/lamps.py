@@ -95,7 +95,7 @@ def compile_lamps(
         raise scenes.SceneError(scene.source_name, [problem])
     aimed = [find_aims(compiled, emitter, view) for emitter, _, _ in shining]
     useful = [flux for _, _, flux in shining]
-    if not direct:
+    if not direct and compiled.features.method.aiming == "aimed":
         useful = [
             flux * flux_to_glass(emitter, aims, compiled.to_local(emitter.position))
             for (emitter, _, flux), aims in zip(shining, aimed, strict=True)

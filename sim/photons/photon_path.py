@@ -51,6 +51,7 @@ def make_follow(precision: str, features: Features) -> object:
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
     intersect = transport.intersect
+    both_branches = features.method.branching == "weights"
 
     @wp.func
     def store(
@@ -110,9 +111,11 @@ def make_follow(precision: str, features: Features) -> object:
                 ray.face = met.face
                 draw = draws + wp.uint64(step)
                 before = flux
+                room = depth < STACK_SIZE
+                if wp.static(not both_branches):
+                    room = False
                 flux, side_flux, swapped = choose_branches(
-                    flux - side_flux, side_flux, threshold, depth < STACK_SIZE,
-                    job.key + wp.uint64(1), draw,
+                    flux - side_flux, side_flux, threshold, room, job.key + wp.uint64(1), draw
                 )
                 if swapped:
                     ray.direction = weaker
@@ -183,7 +186,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     lamps_type = make_lamp_structs(precision).Lamps
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
-    emit = make_emission(precision)
+    emit = make_emission(precision, features.method.sampler)
     sample_wavelength = make_wavelength_function(precision)
     follow = make_follow(precision, features)
 

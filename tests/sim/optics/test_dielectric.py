@@ -14,6 +14,7 @@ from sim.optics.dielectric import (
     reflect,
     refract,
     renormalize,
+    schlick_reflectance,
     sin2_theta_t,
 )
 from sim.precision import precision_types
@@ -60,7 +61,18 @@ def make_probes(precision):
         out_refracted[i] = refract(d, n, cos_theta_i, cos_theta_t, eta[i])
         out_renormalized[i] = renormalize(d)
 
-    return SimpleNamespace(boundary=boundary, directions=directions, types=types)
+    @wp.kernel(**options)
+    def approximate(
+        cos_theta_i: wp.array(dtype=real), eta: wp.array(dtype=real), out: wp.array(dtype=real)
+    ):
+        i = wp.tid()
+        sin2 = sin2_theta_t(cos_theta_i[i], eta[i])
+        cos_theta_t = wp.sqrt(wp.max(real(1.0) - sin2, real(0.0)))
+        out[i] = schlick_reflectance(cos_theta_i[i], cos_theta_t, eta[i])
+
+    return SimpleNamespace(
+        boundary=boundary, directions=directions, approximate=approximate, types=types
+    )
 
 
 @pytest.fixture(params=["float64", "float32"])
@@ -217,3 +229,40 @@ def test_renormalising_squares_the_error_of_the_length(precision, error):
         np.linalg.norm(renormalized, axis=1), 1.0 - 1.5 * e**2 - 0.5 * e**3, rtol=0,
         atol=2 * eps(precision),
     )  # fmt: skip
+
+
+def schlick(precision, cos_theta_i, eta):
+    """Schlick's reflectance on the device, where light is not reflected totally."""
+    probes = make_probes(precision)
+    pair = np.broadcast_arrays(*(np.asarray(a, dtype=precision) for a in (cos_theta_i, eta)))
+    real = probes.types.real
+    inputs = [wp.array(np.ascontiguousarray(a), dtype=real, device="cpu") for a in pair]
+    out = wp.zeros(len(pair[0]), dtype=real, device="cpu")
+    wp.launch(probes.approximate, dim=len(out), inputs=[*inputs, out], device="cpu")
+    return out.numpy().astype(np.float64)
+
+
+@pytest.mark.parametrize("eta", [1.0 / 1.5, 1.5, 1.0 / 2.4, 2.4, 1.0])
+def test_schlick_meets_fresnel_at_normal_incidence(precision, eta):
+    # R₀ = ((η − 1)/(η + 1))² (Born & Wolf 1999, §1.5.3 eq. 36), and no more: 1 − cosθ = 0.
+    expected = ((eta - 1.0) / (eta + 1.0)) ** 2
+    found = schlick(precision, [1.0], [eta])
+    np.testing.assert_allclose(found, expected, rtol=8.0 * eps(precision))
+
+
+def test_schlick_reflects_grazing_light_whole(precision):
+    # From outside at cosθᵢ = 0, from inside at the critical angle, sin²θᵢ = 1/η², where
+    # cosθₜ = 0 but for rounding: a relative error ε of sin²θₜ makes cosθₜ = √ε, and 1 − R is
+    # 5 (1 − R₀) cosθₜ.
+    assert schlick(precision, [0.0], [1.0 / 1.5])[0] == pytest.approx(1.0, abs=4.0 * eps(precision))
+    critical = np.sqrt(1.0 - 1.0 / 1.5**2) * (1.0 + 4.0 * eps(precision))
+    found = schlick(precision, [critical], [1.5])[0]
+    assert found == pytest.approx(1.0, abs=5.0 * np.sqrt(20.0 * eps(precision)))
+
+
+def test_schlick_between_is_the_formula(precision):
+    # R₀ + (1 − R₀)(1 − cosθ)⁵ at 60° outside, cosθ = 1/2: 0.04 + 0.96/32, for η = 1.5; the same
+    # backwards, from inside at sinθᵢ = sin 60°/1.5.
+    inside = np.sqrt(1.0 - 0.75 / 2.25)
+    found = schlick(precision, [0.5, inside], [1.0 / 1.5, 1.5])
+    np.testing.assert_allclose(found, 0.04 + 0.96 / 32.0, rtol=20.0 * eps(precision))

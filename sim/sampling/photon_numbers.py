@@ -1,0 +1,113 @@
+"""The five numbers that a photon is made of, by each of the ways to draw them.
+
+Two numbers stand for its direction, one for its wavelength, two for its place on the lamp. They
+are drawn jointly, so that well-spread points fill the whole space of paths evenly.
+
+Reference:
+    Roberts (2018), "The unreasonable effectiveness of quasirandom sequences": in d dimensions the
+    steps are g⁻¹ … g⁻ᵈ, with g the positive root of g^(d+1) = g + 1.
+"""
+
+import functools
+from typing import Any
+
+import warp as wp
+
+from sim.sampling.counter import hash64
+from sim.sampling.sobol import make_sobol_uniform
+
+__all__ = ["R5_STEPS", "make_photon_numbers"]
+
+R5_STEPS = (
+    0xE19B01AA9D42C633,
+    0xC6D1D6C8ED0C9631,
+    0xAF36D01EF7518DBB,
+    0x9A69443F36F710E7,
+    0x881403B9339BD42D,
+)
+"""g⁻¹ … g⁻⁵ in units of 2⁻⁶⁴, g⁶ = g + 1; all odd, so that no point returns."""
+
+STEP_0 = wp.constant(wp.uint64(R5_STEPS[0]))
+STEP_1 = wp.constant(wp.uint64(R5_STEPS[1]))
+STEP_2 = wp.constant(wp.uint64(R5_STEPS[2]))
+STEP_3 = wp.constant(wp.uint64(R5_STEPS[3]))
+STEP_4 = wp.constant(wp.uint64(R5_STEPS[4]))
+
+
+@functools.cache
+def make_unit(precision: str) -> Any:
+    """Device function `unit(bits)`: a number in [0, 1), of 53 bits in float64, of 24 in float32."""
+    double = precision == "float64"
+
+    @wp.func
+    def unit(bits: wp.uint64):
+        if wp.static(double):
+            return wp.float64(bits >> wp.uint64(11)) * wp.float64(1.1102230246251565e-16)
+        else:
+            return wp.float32(bits >> wp.uint64(40)) * wp.float32(5.9604644775390625e-08)
+
+    return unit
+
+
+@functools.cache
+def make_photon_numbers(precision: str, sampler: str) -> Any:
+    """Device function `photon_numbers(sobol, seeds, seed_row, index, key)`.
+
+    Args:
+        precision: of the numbers.
+        sampler: "sobol", "r2" or "random", see `sim.method`.
+
+    Returns:
+        The function, which returns the five numbers of photon `index` of the stream that `key`
+        and the scramble seeds from `seed_row` on belong to.
+    """
+    sobol_uniform, unit = make_sobol_uniform(precision), make_unit(precision)
+
+    @wp.func
+    def sobol_numbers(
+        sobol: wp.array(dtype=wp.uint32), seeds: wp.array(dtype=wp.uint32), seed_row: int,
+        index: wp.uint32, key: wp.uint64,
+    ):
+        low = hash64(key, wp.uint64(index) * wp.uint64(2))
+        low2 = hash64(key, wp.uint64(index) * wp.uint64(2) + wp.uint64(1))
+        bits0 = wp.uint32(low)
+        bits1 = wp.uint32(low >> wp.uint64(21))
+        bits2 = wp.uint32(low >> wp.uint64(42))
+        bits3 = wp.uint32(low2)
+        bits4 = wp.uint32(low2 >> wp.uint64(21))
+        u0 = sobol_uniform(sobol, index, 0, seeds[seed_row], bits0)
+        u1 = sobol_uniform(sobol, index, 1, seeds[seed_row + 1], bits1)
+        u2 = sobol_uniform(sobol, index, 2, seeds[seed_row + 2], bits2)
+        u3 = sobol_uniform(sobol, index, 3, seeds[seed_row + 3], bits3)
+        u4 = sobol_uniform(sobol, index, 4, seeds[seed_row + 4], bits4)
+        return u0, u1, u2, u3, u4
+
+    @wp.func
+    def r5_numbers(
+        sobol: wp.array(dtype=wp.uint32), seeds: wp.array(dtype=wp.uint32), seed_row: int,
+        index: wp.uint32, key: wp.uint64,
+    ):
+        i = wp.uint64(index)
+        shift = key + wp.uint64(3)
+        u0 = unit(hash64(shift, wp.uint64(0)) + STEP_0 * i)
+        u1 = unit(hash64(shift, wp.uint64(1)) + STEP_1 * i)
+        u2 = unit(hash64(shift, wp.uint64(2)) + STEP_2 * i)
+        u3 = unit(hash64(shift, wp.uint64(3)) + STEP_3 * i)
+        u4 = unit(hash64(shift, wp.uint64(4)) + STEP_4 * i)
+        return u0, u1, u2, u3, u4
+
+    @wp.func
+    def random_numbers(
+        sobol: wp.array(dtype=wp.uint32), seeds: wp.array(dtype=wp.uint32), seed_row: int,
+        index: wp.uint32, key: wp.uint64,
+    ):
+        stream = key + wp.uint64(3)
+        first = wp.uint64(index) * wp.uint64(5)
+        u0 = unit(hash64(stream, first))
+        u1 = unit(hash64(stream, first + wp.uint64(1)))
+        u2 = unit(hash64(stream, first + wp.uint64(2)))
+        u3 = unit(hash64(stream, first + wp.uint64(3)))
+        u4 = unit(hash64(stream, first + wp.uint64(4)))
+        return u0, u1, u2, u3, u4
+
+    return {"sobol": sobol_numbers, "r2": r5_numbers, "random": random_numbers}[sampler]
