@@ -108,6 +108,17 @@ def test_the_default_is_less_noisy_than_the_baseline(trace_blocks, default_block
     assert np.sqrt(np.mean(baseline**2) / np.mean(default**2)) > 4.0
 
 
+def test_unaimed_photons_carry_their_lamps_flux_evenly(trace_passes):
+    # And with roulette all of it until they end, in one piece a colour: four behind the ball.
+    method = {"aiming": "unaimed", "branching": "roulette"}
+    photons = trace_passes(make_ball_scene(), photons=4000, method=method).photons[0]
+    met = photons["refractions"] + photons["reflections"] > 0
+    for emitter in (0, 1):
+        for kind, colours in ((~met, 1), (met, 4)):
+            flux = photons["flux"][kind & (photons["emitter"] == emitter)] * colours
+            np.testing.assert_allclose(flux, flux.mean() if len(flux) else 0.0, rtol=1e-12)
+
+
 def make_plate_scene():
     """A beam straight down through a plate of index 1.5 onto a floor."""
     plate = scenes.SceneObject(

@@ -114,3 +114,8 @@ def test_double_precision_has_its_digits():
     for sampler in ("r2", "random"):
         bits = (numbers(sampler) * 2.0**53).astype(np.uint64) & np.uint64(1)
         assert 0.4 < bits.mean() < 0.6
+
+
+def test_random_numbers_are_used_once():
+    x = numbers("random")
+    assert len(np.unique(x)) == x.size
