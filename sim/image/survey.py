@@ -102,6 +102,19 @@ class Survey:
         """Fraction of the samples that see a receiver which see this one."""
         return float(np.mean(self.objects == prim)) if len(self.objects) else 0.0
 
+    @property
+    def samples(self) -> int:
+        """How many samples see a receiver."""
+        return len(self.objects)
+
+    def seen_area(self, prim: int) -> float:
+        """About how large the part of an object is that is seen [m²]: as wide and long as that."""
+        points = self.points[self.objects == prim]
+        if len(points) < 2:
+            return 0.0
+        extents = np.sort(np.ptp(points, axis=0))
+        return float(extents[-1] * extents[-2])
+
     def density(
         self, prim: int, frame: FloatArray, centre: FloatArray, half: FloatArray, cells: int
     ) -> FloatArray:

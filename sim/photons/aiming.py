@@ -15,7 +15,7 @@ import scenes
 from sim.photons.lamp_structs import AIM_AREA, AIM_BASE, AIM_CELLS, AIM_CONE
 from sim.scene_data import CompiledScene
 
-__all__ = ["Aim", "View", "find_aims", "flux_to_glass"]
+__all__ = ["Aim", "Guide", "View", "cells_to_distribution", "find_aims", "flux_to_glass"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -44,6 +44,13 @@ class View(Protocol):
     def fraction(self, prim: int) -> float:
         """Fraction of the picture in which the object is seen, directly or through glass."""
 
+    def seen_area(self, prim: int) -> float:
+        """About how large the part of an object is that is seen [m²]."""
+
+    @property
+    def samples(self) -> int:
+        """How many samples of the picture see a receiver."""
+
 
 @dataclass(frozen=True)
 class Aim:
@@ -57,7 +64,8 @@ class Aim:
         half: (2,) half sizes of the rectangle [m].
         radius: of the sphere [m].
         specular: whether glass is aimed at.
-        distribution: of an area's points, see `sim.photons.lamp_structs`; else empty.
+        distribution: of an area's points, or of a cone's directions or a beam's profile once they
+            are learned, see `sim.photons.lamp_structs`; empty where it is uniform.
     """
 
     share: float
@@ -68,6 +76,19 @@ class Aim:
     radius: float
     specular: bool
     distribution: FloatArray
+
+
+@dataclass(frozen=True)
+class Guide:
+    """How photons are best divided, as a pilot has found.
+
+    Attributes:
+        shares: of each lamp that shines, among all photons.
+        aims: of each lamp that shines.
+    """
+
+    shares: tuple[float, ...]
+    aims: tuple[tuple[Aim, ...], ...]
 
 
 def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[Aim]:
@@ -159,10 +180,11 @@ def _area(share: float, compiled: CompiledScene, prim: int, view: View | None) -
         seen = view.density(prim, frame, centre, half, cells)
         if seen.sum() > 0.0:
             density = UNIFORM_PART * density + (1.0 - UNIFORM_PART) * seen / seen.sum()
-    return Aim(share, int(AIM_AREA), centre, frame, half, 0.0, False, _distribution(density))
+    distribution = cells_to_distribution(density)
+    return Aim(share, int(AIM_AREA), centre, frame, half, 0.0, False, distribution)
 
 
-def _distribution(density: FloatArray) -> FloatArray:
+def cells_to_distribution(density: FloatArray) -> FloatArray:
     """Distribution function of cells: of the rows, then of the cells in each row."""
     rows = density.sum(axis=1)
     return np.concatenate([_cumulated(line) for line in (rows, *(density / rows[:, None]))])

@@ -18,7 +18,7 @@ from sim.photons.lamp_structs import (
     SPOT,
     make_lamp_structs,
 )
-from sim.sampling.directions import cone_solid_angle
+from sim.sampling.directions import cone_solid_angle, cone_square, from_world
 
 __all__ = ["make_cell_functions", "make_density_functions"]
 
@@ -28,7 +28,7 @@ INV_4PI = wp.constant(0.07957747154594767)
 
 @functools.cache
 def make_cell_functions(precision: str) -> SimpleNamespace:
-    """Device functions of a rectangle's distribution: `invert_cells`, `cell_density`."""
+    """Device functions of distributions over cells: `invert_square`, `cell_density`."""
     structs = make_lamp_structs(precision)
     real = structs.real
 
@@ -54,6 +54,16 @@ def make_cell_functions(precision: str) -> SimpleNamespace:
         return cell, (real(cell) + inside) * real(wp.static(1.0 / AIM_CELLS))
 
     @wp.func
+    def invert_square(
+        cdf: wp.array(dtype=real), guide: wp.array(dtype=int), first: int, u0: real, u1: real
+    ):
+        """Point of the unit square where the distribution reaches (u0, u1)."""
+        cell, s = invert_cells(cdf, guide, first, u0)
+        row = first + (cell + 1) * (AIM_CELLS + 1)
+        _j, t = invert_cells(cdf, guide, row, u1)
+        return s, t
+
+    @wp.func
     def cell_density(cdf: wp.array(dtype=real), first: int, s: real, t: real):
         """Density at (s, t) of the unit square, relative to a uniform one."""
         cells = int(AIM_CELLS)
@@ -65,13 +75,13 @@ def make_cell_functions(precision: str) -> SimpleNamespace:
         return along_u * along_v * real(wp.static(float(AIM_CELLS * AIM_CELLS)))
 
     return SimpleNamespace(
-        locate=locate, invert_cells=invert_cells, cell_density=cell_density
+        locate=locate, invert_square=invert_square, cell_density=cell_density
     )
 
 
 @functools.cache
 def make_density_functions(precision: str) -> SimpleNamespace:
-    """Device functions of solid-angle densities: `own_density`, `target_density` [1/sr]."""
+    """Device functions of solid-angle densities [1/sr], and of the cone around a target."""
     structs = make_lamp_structs(precision)
     real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
     cell_density = make_cell_functions(precision).cell_density
@@ -100,6 +110,36 @@ def make_density_functions(precision: str) -> SimpleNamespace:
         if sin2 >= real(1.0):
             return real(1.0)
         return sin2 / (real(2.0) * (real(1.0) + wp.sqrt(real(1.0) - sin2)))
+
+    @wp.func
+    def cone_axis(target: target_type, origin: vec3, sin2_half: real):
+        """The axis of that cone; any for the whole sphere."""
+        if sin2_half >= real(1.0):
+            return vec3(real(0.0), real(0.0), real(1.0))
+        return wp.normalize(target.centre - origin)
+
+    @wp.func
+    def square_of_cone(target: target_type, origin: vec3, direction: vec3):
+        """The two numbers that the cone from `origin` turns into `direction`."""
+        sin2_half = cone_of(target, origin)
+        x, y, z = from_world(direction, cone_axis(target, origin, sin2_half))
+        return cone_square(x, y, z, sin2_half)
+
+    @wp.func
+    def cone_density(
+        lamps: lamps_type, target: target_type, origin: vec3, direction: vec3, drawn: bool
+    ):
+        """Density of the directions from `origin` into the cone around the target."""
+        sin2_half = cone_of(target, origin)
+        if sin2_half < real(1.0) and not drawn:
+            chord = direction - cone_axis(target, origin, sin2_half)
+            if wp.dot(chord, chord) > real(4.0) * sin2_half:
+                return real(0.0)
+        density = real(1.0) / cone_solid_angle(sin2_half)
+        if target.first_cdf >= 0:
+            s, t = square_of_cone(target, origin, direction)
+            density *= cell_density(lamps.cdf, target.first_cdf, s, t)
+        return density
 
     @wp.func
     def area_density(
@@ -149,16 +189,15 @@ def make_density_functions(precision: str) -> SimpleNamespace:
             anchor = origin
             if emitter.kind == SPHERE_LAMP:
                 anchor = emitter.centre
-            sin2_half = cone_of(target, anchor)
-            if sin2_half < real(1.0) and not drawn:
-                chord = direction - wp.normalize(target.centre - anchor)
-                if wp.dot(chord, chord) > real(4.0) * sin2_half:
-                    return real(0.0)
-            return real(1.0) / cone_solid_angle(sin2_half)
+            return cone_density(lamps, target, anchor, direction, drawn)
         if target.kind == AIM_AREA:
             return area_density(lamps, emitter, target, origin, direction, drawn)
         return own_density(emitter, direction)
 
     return SimpleNamespace(
-        own_density=own_density, target_density=target_density, cone_of=cone_of
+        own_density=own_density,
+        target_density=target_density,
+        cone_of=cone_of,
+        cone_axis=cone_axis,
+        square_of_cone=square_of_cone,
     )

@@ -19,7 +19,6 @@ import warp as wp
 from sim.photons.densities import make_cell_functions, make_density_functions
 from sim.photons.lamp_structs import (
     AIM_AREA,
-    AIM_CELLS,
     AIM_CONE,
     BEAM,
     RECTANGLE_LAMP,
@@ -71,7 +70,8 @@ def make_direction_function(precision: str) -> object:
     structs = make_lamp_structs(precision)
     real, vec3 = structs.real, structs.vec3
     emitter_type, target_type = structs.Emitter, structs.Target
-    cone_of = make_density_functions(precision).cone_of
+    densities = make_density_functions(precision)
+    cone_of, cone_axis = densities.cone_of, densities.cone_axis
 
     @wp.func
     def sample_direction(
@@ -83,7 +83,7 @@ def make_direction_function(precision: str) -> object:
             x, y, z = sample_cone(u0, u1, sin2_half)
             if sin2_half >= real(1.0):
                 return vec3(x, y, z)
-            return to_world(x, y, z, wp.normalize(target.centre - origin))
+            return to_world(x, y, z, cone_axis(target, origin, sin2_half))
         if emitter.kind == RECTANGLE_LAMP:
             x, y, z = sample_cosine_hemisphere(u0, u1)
             return to_world(x, y, z, axis)
@@ -98,14 +98,13 @@ def make_direction_function(precision: str) -> object:
 
 @functools.cache
 def make_line_function(precision: str) -> object:
-    """Device function `sample_line(lamps, emitter, target, u0, u1, u3, u4)`: (origin, direction).
+    """Device function `sample_line(emitter, target, u0, u1, u3, u4)`: (origin, direction).
 
     The first two numbers choose what is aimed at, the last two the point of the lamp. Points of
     a receiver are drawn before the lamp's, so that photons land as evenly as the numbers are.
     """
     structs = make_lamp_structs(precision)
-    real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
-    invert_cells = make_cell_functions(precision).invert_cells
+    real, vec3 = structs.real, structs.vec3
     emitter_type, target_type = structs.Emitter, structs.Target
     sample_direction = make_direction_function(precision)
 
@@ -118,20 +117,15 @@ def make_line_function(precision: str) -> object:
 
     @wp.func
     def sample_line(
-        lamps: lamps_type, emitter: emitter_type, target: target_type, u0: real, u1: real,
-        u3: real, u4: real,
+        emitter: emitter_type, target: target_type, u0: real, u1: real, u3: real, u4: real
     ):
         origin = emitter.centre
         if emitter.kind == RECTANGLE_LAMP:
             origin += emitter.frame[0] * ((u3 + u3 - real(1.0)) * emitter.half_u)
             origin += emitter.frame[1] * ((u4 + u4 - real(1.0)) * emitter.half_v)
         if target.kind == AIM_AREA:
-            first = target.first_cdf
-            cell, s = invert_cells(lamps.cdf, lamps.guide, first, u0)
-            row = first + (cell + 1) * (AIM_CELLS + 1)
-            _j, t = invert_cells(lamps.cdf, lamps.guide, row, u1)
-            point = target.centre + target.frame[0] * ((s + s - real(1.0)) * target.half_u)
-            point += target.frame[1] * ((t + t - real(1.0)) * target.half_v)
+            point = target.centre + target.frame[0] * ((u0 + u0 - real(1.0)) * target.half_u)
+            point += target.frame[1] * ((u1 + u1 - real(1.0)) * target.half_v)
             if emitter.kind == SPHERE_LAMP:
                 way = point - emitter.centre
                 way *= real(1.0) / wp.length(way)
@@ -165,6 +159,8 @@ def make_emission(precision: str, sampler: str = "sobol") -> object:
     own_density, target_density = densities.own_density, densities.target_density
     sample_direction = make_direction_function(precision)
     sample_line = make_line_function(precision)
+    cells = make_cell_functions(precision)
+    invert_square, cell_density = cells.invert_square, cells.cell_density
     photon_numbers = make_photon_numbers(precision, sampler)
 
     @wp.func
@@ -179,6 +175,8 @@ def make_emission(precision: str, sampler: str = "sobol") -> object:
         emitter = lamps.emitters[emitter_row]
         target = lamps.targets[target_row]
         u0, u1, u2, u3, u4 = photon_numbers(lamps.sobol, lamps.seeds, seed_row, index, key)
+        if target.first_cdf >= 0:
+            u0, u1 = invert_square(lamps.cdf, lamps.guide, target.first_cdf, u0, u1)
         ray = ray_type()
         ray.prim = -1
         ray.face = -1
@@ -192,9 +190,12 @@ def make_emission(precision: str, sampler: str = "sobol") -> object:
             ray.origin = emitter.centre + emitter.frame[0] * (x * emitter.half_u)
             ray.origin += emitter.frame[1] * (y * emitter.half_v)
             ray.direction = sample_direction(emitter, target, ray.origin, u3, u4)
-            return ray, u2, emitter.flux / target.photons
+            flux_of_beam = emitter.flux / target.photons
+            if target.first_cdf >= 0:
+                flux_of_beam /= cell_density(lamps.cdf, target.first_cdf, u0, u1)
+            return ray, u2, flux_of_beam
 
-        origin, direction = sample_line(lamps, emitter, target, u0, u1, u3, u4)
+        origin, direction = sample_line(emitter, target, u0, u1, u3, u4)
         flux = real(0.0)
         own = own_density(emitter, direction)
         if emitter.kind == SPHERE_LAMP:

@@ -65,8 +65,10 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
     class Target:
         """Where photons are aimed, and how many: the first target of an emitter is its base.
 
-        An area's distribution function starts at `first_cdf` of `Lamps.cdf`: AIM_CELLS + 1
-        numbers over the cells along u, then as many for each of these along v.
+        The two numbers that choose what is aimed at are drawn from a distribution over the cells
+        of their unit square, which starts at `first_cdf` of `Lamps.cdf`: AIM_CELLS + 1 numbers
+        over the cells along the first, then as many for each of these along the second. Where
+        `first_cdf` is negative it is uniform; areas always have one.
         """
 
         kind: int

@@ -8,7 +8,7 @@ import numpy.typing as npt
 import warp as wp
 
 import scenes
-from sim.photons.aiming import Aim, View, find_aims, flux_to_glass
+from sim.photons.aiming import Aim, Guide, View, find_aims, flux_to_glass
 from sim.photons.lamp_structs import (
     AIM_CELLS,
     BEAM,
@@ -50,12 +50,14 @@ class Lamps:
         streams: what one pass emits; their photon counts add up to the pass's photons.
         flux: radiant flux inside the film's wavelengths, all lamps together [W].
         spectra: of each emitter on the device, inside the film's wavelengths.
+        aims: of each emitter on the device, what its streams are aimed at.
     """
 
     data: Any
     streams: tuple[Stream, ...]
     flux: float
     spectra: tuple[EmissionSpectrum, ...]
+    aims: tuple[tuple[Aim, ...], ...]
 
     def seed(self, device: str, seed: int, pass_index: int) -> None:
         """Give every stream its own scramble for this pass."""
@@ -70,6 +72,7 @@ def compile_lamps(
     *,
     view: View | None = None,
     direct: bool = True,
+    guide: Guide | None = None,
 ) -> Lamps:
     """Lay the emitters out and share `photons` among them and their targets.
 
@@ -79,6 +82,7 @@ def compile_lamps(
         photons: photons of one pass.
         view: what the camera sees, so that most photons are aimed there; None: no camera.
         direct: whether what comes straight from a lamp is worth photons; else only glass is.
+        guide: what a pilot has learned of where photons are worth most, in place of both.
 
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.
@@ -93,20 +97,25 @@ def compile_lamps(
         allowed = f"an emitter that shines between {edges_nm[0]:g} and {edges_nm[-1]:g} nm"
         problem = scenes.Problem("emitters", f"none gives light; it needs {allowed}", None, allowed)
         raise scenes.SceneError(scene.source_name, [problem])
-    aimed = [find_aims(compiled, emitter, view) for emitter, _, _ in shining]
-    useful = [flux for _, _, flux in shining]
-    if not direct and compiled.features.method.aiming == "aimed":
-        useful = [
-            flux * flux_to_glass(emitter, aims, compiled.to_local(emitter.position))
-            for (emitter, _, flux), aims in zip(shining, aimed, strict=True)
-        ]
-    counts = _share(photons, _emitter_shares(useful))
+    if guide is None:
+        aimed = [find_aims(compiled, emitter, view) for emitter, _, _ in shining]
+        useful = [flux for _, _, flux in shining]
+        if not direct and compiled.features.method.aiming == "aimed":
+            useful = [
+                flux * flux_to_glass(emitter, aims, compiled.to_local(emitter.position))
+                for (emitter, _, flux), aims in zip(shining, aimed, strict=True)
+            ]
+        counts = _share(photons, _emitter_shares(useful))
+    else:
+        aimed = [list(one) for one in guide.aims]
+        counts = _share(photons, list(guide.shares))
     tables = _Tables()
     for (emitter, spectrum, flux), aims, count in zip(shining, aimed, counts, strict=True):
         tables.add(_emitter_row(compiled, emitter), spectrum, flux, aims, count)
     flux = sum(flux for _, _, flux in shining)
     spectra = tuple(spectrum for _, spectrum, _ in shining)
-    return Lamps(tables.on_device(compiled), tuple(tables.streams), flux, spectra)
+    found = tuple(tuple(aims) for aims in aimed)
+    return Lamps(tables.on_device(compiled), tuple(tables.streams), flux, spectra, found)
 
 
 class _Tables:
@@ -134,7 +143,8 @@ class _Tables:
         self.segments.extend(pieces)
         for aim, count in zip(aims, _share(photons, [a.share for a in aims]), strict=True):
             self.streams.append(Stream(len(self.emitters) - 1, len(self.targets), count))
-            first_cdf = self._add_distribution(*aim.distribution.reshape(-1, int(AIM_CELLS) + 1))
+            functions = aim.distribution.reshape(-1, int(AIM_CELLS) + 1)
+            first_cdf = self._add_distribution(*functions) if len(functions) else -1
             shape = (aim.kind, aim.centre, aim.frame, *aim.half, aim.radius)
             self.targets.append((*shape, first_cdf, float(count)))
 

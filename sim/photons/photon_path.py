@@ -233,6 +233,9 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     ):
         total = wp.float64(0.0)
         flows = FLOWS()
+        if job.slots_a_thread > 0:
+            job.range_row += wp.tid()
+            job.first_slot += wp.tid() * job.slots_a_thread
         index = start + wp.tid() * job.run
         stop = wp.min(index + job.run, job.stop)
         while index < stop:

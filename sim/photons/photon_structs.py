@@ -95,6 +95,7 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         range_row: int
         first_slot: int
         slot_count: int
+        slots_a_thread: int  # 0: the threads of a range share its slots and its row of counters
         run: int  # photons a thread traces
         stop: int  # the range's end
         max_interactions: int

@@ -19,7 +19,7 @@ from sim.sampling.counter import fold_key
 from sim.sampling.sobol import DIMENSIONS
 from sim.scene_data import CompiledScene
 
-__all__ = ["trace_photons"]
+__all__ = ["make_job", "trace_photons"]
 
 RANGE_SIZE = 16384
 """Photons a launch: some milliseconds of work, so that cores share evenly and Ctrl-C is heard."""
@@ -151,12 +151,9 @@ class _Run:
 
     def _job(self, number: int, share: _Share) -> Any:
         """The Job struct of one range."""
-        stream = self.lamps.streams[share.stream_row]
-        job = make_photon_structs(self.compiled.precision).Job()
-        job.emitter = stream.emitter
-        job.target = stream.target
-        job.seed_row = share.stream_row * DIMENSIONS
-        job.key = fold_key(self.seed, self.pass_index, share.stream_row)
+        job = make_job(
+            self.compiled, self.lamps, share.stream_row, seed=self.seed, pass_index=self.pass_index
+        )
         job.range_row = number
         job.first_slot = share.first_slot
         job.slot_count = share.slot_count
@@ -164,5 +161,18 @@ class _Run:
         job.stop = share.start + share.count
         job.max_interactions = self.max_interactions
         job.store_direct = int(self.store_direct)
-        job.branch_threshold = BRANCH_THRESHOLD
         return job
+
+
+def make_job(
+    compiled: CompiledScene, lamps: Lamps, stream_row: int, *, seed: int, pass_index: int
+) -> Any:
+    """A Job struct with what a stream has in a pass; its ranges fill in the rest."""
+    stream = lamps.streams[stream_row]
+    job = make_photon_structs(compiled.precision).Job()
+    job.emitter = stream.emitter
+    job.target = stream.target
+    job.seed_row = stream_row * DIMENSIONS
+    job.key = fold_key(seed, pass_index, stream_row)
+    job.branch_threshold = BRANCH_THRESHOLD
+    return job

@@ -13,6 +13,9 @@ import warp as wp
 
 __all__ = [
     "cone_solid_angle",
+    "cone_square",
+    "disk_square",
+    "from_world",
     "sample_cone",
     "sample_cosine_hemisphere",
     "sample_disk",
@@ -38,6 +41,25 @@ def sample_disk(u0: Any, u1: Any):
 
 
 @wp.func
+def disk_square(x: Any, y: Any):
+    """The numbers (u0, u1) that `sample_disk` turns into (x, y)."""
+    half = type(x)(0.5)
+    r = wp.sqrt(x * x + y * y)
+    if r == type(x)(0.0):
+        return half, half
+    four_over_pi = type(x)(1.2732395447351628)
+    a = r
+    b = r
+    if wp.abs(x) > wp.abs(y):
+        a = wp.where(x < type(x)(0.0), -r, r)
+        b = a * four_over_pi * wp.atan(y / x)
+    else:
+        b = wp.where(y < type(x)(0.0), -r, r)
+        a = b * four_over_pi * wp.atan(x / y)
+    return half + half * a, half + half * b
+
+
+@wp.func
 def sample_cone(u0: Any, u1: Any, sin2_half: Any):
     """Local direction (x, y, z) uniform in solid angle in a cone about z.
 
@@ -50,6 +72,15 @@ def sample_cone(u0: Any, u1: Any, sin2_half: Any):
     s = (r2 + r2) * sin2_half
     scale = wp.sqrt((sin2_half + sin2_half) * wp.max(type(u0)(2.0) - s, type(u0)(0.0)))
     return x * scale, y * scale, type(u0)(1.0) - s
+
+
+@wp.func
+def cone_square(x: Any, y: Any, z: Any, sin2_half: Any):
+    """The numbers (u0, u1) that `sample_cone` turns into the unit vector (x, y, z)."""
+    smallest = type(x)(1e-30)
+    scale2 = (sin2_half + sin2_half) * (type(x)(1.0) + z)
+    scale = type(x)(1.0) / wp.sqrt(wp.max(scale2, smallest))
+    return disk_square(x * scale, y * scale)
 
 
 @wp.func
@@ -75,16 +106,30 @@ def cone_solid_angle(sin2_half: Any):
 
 
 @wp.func
-def to_world(x: Any, y: Any, z: Any, axis: Any):
-    """The vector x u + y v + z axis in a frame about `axis` (Duff et al. 2017, JCGT 6(1))."""
-    one = type(x)(1.0)
+def frame_of(axis: Any):
+    """Unit vectors u and v of a right-handed frame (u, v, axis) (Duff et al. 2017, JCGT 6(1))."""
+    one = type(axis[0])(1.0)
     sign = one
-    if axis[2] < type(x)(0.0):
+    if axis[2] < type(axis[0])(0.0):
         sign = -one
     a = -one / (sign + axis[2])
     b = axis[0] * axis[1] * a
     u = type(axis)(one + sign * axis[0] * axis[0] * a, sign * b, -sign * axis[0])
     v = type(axis)(b, sign + axis[1] * axis[1] * a, -axis[1])
+    return u, v
+
+
+@wp.func
+def to_world(x: Any, y: Any, z: Any, axis: Any):
+    """The vector x u + y v + z axis in the frame about `axis`."""
+    u, v = frame_of(axis)
     world = u * x + v * y + axis * z
     # Of unit length but for rounding, which one Newton step of 1/|d| takes away.
     return world * (type(x)(1.5) - type(x)(0.5) * wp.dot(world, world))
+
+
+@wp.func
+def from_world(direction: Any, axis: Any):
+    """The (x, y, z) that `to_world` turns into `direction`."""
+    u, v = frame_of(axis)
+    return wp.dot(direction, u), wp.dot(direction, v), wp.dot(direction, axis)

@@ -1,0 +1,59 @@
+"""Lamps whose photons go where a pilot has found them to be worth most."""
+
+import numpy as np
+import numpy.typing as npt
+
+from sim.photons.aiming import View
+from sim.photons.guidance import learn_guide
+from sim.photons.lamps import Lamps, compile_lamps
+from sim.photons.pilot import trace_pilot
+from sim.scene_data import CompiledScene
+
+__all__ = ["compile_guided_lamps"]
+
+FloatArray = npt.NDArray[np.float64]
+
+PILOT_PART = 0.02
+"""A pilot's photons, in parts of all that will be traced; but at least, and at most, as many as
+a density of 32 × 32 cells needs and can use."""
+FEWEST = 4096
+MOST = 32768
+
+
+def compile_guided_lamps(
+    compiled: CompiledScene,
+    edges_nm: FloatArray,
+    photons: int,
+    *,
+    view: View,
+    seed: int,
+    max_interactions: int,
+    threads: int,
+    total: int,
+) -> Lamps:
+    """Lamps for a picture whose photons are those that have met glass.
+
+    What is found depends on the scene, the camera, the seed and the numbers of photons alone.
+
+    Args:
+        compiled: the scene.
+        edges_nm: band edges of the film [nm].
+        photons: photons of one pass.
+        view: what the camera sees.
+        seed: the run's seed.
+        max_interactions: surfaces that one photon and all its branches may meet.
+        threads: CPU threads.
+        total: photons of all passes, as far as is known: a pilot is a small part of them.
+
+    Raises:
+        scenes.SceneError: no emitter shines inside the film's wavelengths.
+    """
+    if compiled.features.method.aiming == "unaimed":
+        return compile_lamps(compiled, edges_nm, photons, direct=False)
+    scouts = int(np.clip(PILOT_PART * total, FEWEST, MOST))
+    lamps = compile_lamps(compiled, edges_nm, scouts, view=view, direct=False)
+    pilot = trace_pilot(
+        compiled, lamps, seed=seed, max_interactions=max_interactions, threads=threads
+    )
+    guide = learn_guide(compiled, lamps, pilot, view, direct=False)
+    return compile_lamps(compiled, edges_nm, photons, guide=guide)
