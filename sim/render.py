@@ -32,9 +32,11 @@ from sim.image.sight import compose_lights
 from sim.image.survey import Survey, make_measure_footprints, survey_view
 from sim.launch import load_kernels
 from sim.photons.energy import EnergyBooks
+from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
 from sim.photons.photon_map import PhotonMap, build_photon_map, make_collect, make_reorder
 from sim.photons.photon_path import make_trace_photons
+from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
@@ -81,10 +83,7 @@ def render(
         _load_all_kernels(compiled, plan.threads)
         camera = compile_camera(compiled, scene.camera, scene.film)
         survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
-        lamps = compile_lamps(
-            compiled, edges_nm, plan.photons, view=survey,
-            direct=plan.direct_light == "photons",
-        )
+        lamps = _compile_lamps(compiled, survey, plan)
         receivers = compile_receivers(compiled, lamps, edges_nm)
         film = create_film(
             scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device,
@@ -120,7 +119,20 @@ def _load_all_kernels(compiled: CompiledScene, threads: int) -> None:
     general = (make_collect, make_reorder)
     kernels = [make(compiled.precision, compiled.features) for make in special]
     kernels += [make(compiled.precision) for make in general]
+    kernels.append(make_retrace_emission(compiled.precision, compiled.features.method.sampler))
     load_kernels(kernels, device=compiled.device, threads=threads)
+
+
+def _compile_lamps(compiled: CompiledScene, survey: Survey, plan: ResolvedSettings) -> Lamps:
+    """The lamps, with photons for what they have to show: all light, or what has met glass."""
+    edges_nm = np.asarray(compiled.scene.film.edges_nm, dtype=np.float64)
+    if plan.direct_light == "photons":
+        return compile_lamps(compiled, edges_nm, plan.photons, view=survey)
+    return compile_guided_lamps(
+        compiled, edges_nm, plan.photons, view=survey, seed=plan.seed,
+        max_interactions=plan.max_interactions, threads=plan.threads,
+        total=plan.photons * plan.passes,
+    )
 
 
 def radius_shrinkage(pass_index: int, alpha: float) -> float:

@@ -12,7 +12,9 @@ if TYPE_CHECKING:
 
     from scenes import Scene
     from sim import Picture
+    from sim.photons.aiming import Guide
     from sim.photons.energy import EnergyBooks
+    from sim.photons.lamps import Lamps
 
 SMALL_SCENE = """\
 title = "A small scene: a beam through a ball of glass onto a floor"
@@ -106,7 +108,7 @@ class Passes(NamedTuple):
 
 @pytest.fixture(scope="session")
 def trace_passes() -> Callable[..., Passes]:
-    """Trace a scene; with `aimed` as a rendering does, aimed at what the camera sees."""
+    """Trace a scene; with `aimed` at what the camera sees, with a `guide` made for its lamps."""
     return _trace_passes
 
 
@@ -122,6 +124,7 @@ def _trace_passes(
     seed: int = 0,
     threads: int = 2,
     method: dict[str, Any] | None = None,
+    guide: Callable[[Lamps], Guide] | None = None,
 ) -> Passes:
     from sim.device import start_device
     from sim.method import Method
@@ -134,6 +137,8 @@ def _trace_passes(
     )
     view = _survey(compiled) if aimed else None
     lamps = compile_lamps(compiled, scene.film.edges_nm, photons, view=view)
+    if guide is not None:
+        lamps = compile_lamps(compiled, scene.film.edges_nm, photons, guide=guide(lamps))
     batches = [
         trace_photons(
             compiled,

@@ -36,10 +36,11 @@ def test_the_picture_is_whole(small_scene, picture):
     assert (picture.settings.photons, picture.settings.passes) == (2000, 2)
     assert min(picture.timings.values()) >= 0.0
     assert picture.srgb.shape == (film.height, film.width, 3)
-    # A beam's flux is exact: D65's part between 390 and 710 nm of 1 W; and every watt is found.
+    # D65's part between 390 and 710 nm of 1 W, but for the noise of a learned profile: 4000
+    # photons, evenly drawn; and every watt is found.
     spectrum = small_scene.emitters[0].emission()
     emitted = spectrum.band_flux(film.edges_nm).sum() / spectrum.total
-    assert picture.energy.emitted == pytest.approx(emitted, rel=1e-12)
+    assert picture.energy.emitted == pytest.approx(emitted, rel=5e-3)
     assert abs(picture.energy.residual) < 1e-12
 
 

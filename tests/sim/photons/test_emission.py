@@ -1,9 +1,13 @@
 """Lamps shine as their closed forms say, wherever their photons are aimed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import scenes
+from sim.photons.aiming import Guide, cells_to_distribution
+from sim.photons.lamp_structs import AIM_BASE, AIM_CELLS, AIM_CONE
 
 CELLS = 4
 HALF = 1.0
@@ -134,7 +138,29 @@ def test_the_form_factor_is_that_of_a_patch_far_away():
     assert abs(form_factors(small).sum() / patch.sum() - 1.0) < 0.02
 
 
-@pytest.mark.parametrize("aim", ["plain", "glass", "glass and view"])
+def any_guide(lamps):
+    """A guide that has learned nonsense: cones and beams of uneven density, in uneven shares."""
+    random = np.random.default_rng(5)
+    cells = int(AIM_CELLS)
+
+    def teach(aim, share, *, learns):
+        # Smooth and steep, from 0.1 to 2, and another one for each.
+        i, j = np.indices((cells, cells)) * random.uniform(2.0, 5.0) / cells
+        density = 1.05 + 0.95 * np.sin(i + random.uniform(0, 6)) * np.cos(2 * j)
+        distribution = cells_to_distribution(density / density.sum()) if learns else np.zeros(0)
+        return replace(aim, share=share, distribution=distribution)
+
+    # No areas: what they did is left to cones.
+    kept = [[aim for aim in aims if aim.kind in {AIM_BASE, AIM_CONE}] for aims in lamps.aims]
+    beams = lamps.data.emitters.numpy()["kind"] == 0
+    aims = [
+        tuple(teach(aim, 1 + k, learns=beam or aim.kind == AIM_CONE) for k, aim in enumerate(one))
+        for one, beam in zip(kept, beams, strict=False)
+    ]
+    return Guide(tuple(1.0 for _ in aims), tuple(aims))
+
+
+@pytest.mark.parametrize("aim", ["plain", "glass", "glass and view", "guide"])
 @pytest.mark.parametrize("kind", list(LAMPS))
 def test_irradiance_is_the_closed_form_however_photons_are_aimed(
     trace_passes, assert_mean, kind, aim
@@ -143,7 +169,10 @@ def test_irradiance_is_the_closed_form_however_photons_are_aimed(
     scene = make_scene(lamp, others=aim != "plain")
     # Aimed at what the camera sees, few photons are left for the other cells: more are needed.
     photons, sharp = (60_000, 0.02) if aimed else (12_000, 0.01)
-    passes = trace_passes(scene, photons=photons, passes=16, aimed=aimed)
+    guide = None
+    if aim == "guide":
+        photons, sharp, guide = 100_000, 0.02, any_guide
+    passes = trace_passes(scene, photons=photons, passes=16, aimed=aimed, guide=guide)
     spectrum, film = lamp.emission(), scene.film
     in_film = FLUX * spectrum.band_flux(film.edges_nm).sum() / spectrum.total
     assert passes.flux == pytest.approx(in_film, rel=1e-12)
@@ -177,7 +206,8 @@ def test_a_rectangle_shines_to_one_side_only(trace_passes):
     assert len(passes.photons[0]["flux"]) == 0
 
 
-def test_lamps_inside_of_what_they_are_aimed_at(trace_passes, assert_mean):
+@pytest.mark.parametrize("guide", [None, any_guide], ids=["aimed", "guided"])
+def test_lamps_inside_of_what_they_are_aimed_at(trace_passes, assert_mean, guide):
     # A point lamp in the middle of a ghost inside a white box: all of its light arrives, and as
     # much on each of the six equal faces.
     ghost = scenes.Box(position=(0.0, 5.0, 0.0), size=(1.0, 1.0, 1.0))
@@ -189,7 +219,8 @@ def test_lamps_inside_of_what_they_are_aimed_at(trace_passes, assert_mean):
     )
     lamp = scenes.Point(position=(0.0, 5.0, 0.0), flux=FLUX, spectrum="E")
     scene = scenes.Scene(objects=objects, emitters=(lamp,))
-    passes = trace_passes(scene, photons=6000, passes=16)
+    photons = 6000 if guide is None else 20_000
+    passes = trace_passes(scene, photons=photons, passes=16, guide=guide)
     faces = passes.sums(lambda p: np.bincount(p["face"], weights=p["flux"], minlength=6))
     assert_mean(faces, passes.flux / 6.0)
     assert all(np.all(photons["side"] == 1) for photons in passes.photons)
@@ -269,3 +300,30 @@ def test_divergence_fills_its_cone_evenly(trace_passes, assert_mean):
     assert means.std() < 1e-2 * means.mean()
     sideways = passes.sums(lambda p: np.mean(p["direction"] @ np.stack(beam.frame()[:2]).T, axis=0))
     assert_mean(sideways, 0.0)
+
+
+@pytest.mark.parametrize(
+    "profile", [scenes.RoundProfile(radius=0.2), scenes.SlitProfile(width=0.3, height=0.1)]
+)
+def test_a_beams_profile_is_even_however_it_is_drawn(trace_passes, assert_mean, profile):
+    # As it is by itself: in flux, where its photons are not. ⟨x²⟩ = 1/4 on a disk, 1/3 on a square.
+    beam = make_beam(profile)
+    passes = trace_passes(
+        make_scene(beam, others=False), photons=20_000, passes=16, guide=any_guide
+    )
+    assert_mean([books.emitted for books in passes.books], passes.flux)
+    u, v, axis = beam.frame()
+    u_half = profile.radius if profile.type == "round" else 0.5 * profile.width
+    v_half = profile.radius if profile.type == "round" else 0.5 * profile.height
+
+    def moments(photons):
+        offset = photons["position"] - beam.position
+        offset = offset - (offset @ axis)[:, None] * axis
+        x, y, flux = offset @ u / u_half, offset @ v / v_half, photons["flux"]
+        assert flux.max() > 2.0 * flux.min()  # it is drawn unevenly
+        return [flux @ x, flux @ y, flux @ (x * y), flux @ (x * x), flux @ (y * y)]
+
+    second = 1.0 / 4.0 if profile.type == "round" else 1.0 / 3.0
+    found = passes.sums(moments)
+    assert_mean(found, passes.flux * np.array([0.0, 0.0, 0.0, second, second]))
+    assert np.all(found.std(axis=0) < 0.01 * passes.flux)

@@ -11,6 +11,9 @@ from sim.device import start_device
 from sim.precision import precision_types
 from sim.sampling.directions import (
     cone_solid_angle,
+    cone_square,
+    disk_square,
+    from_world,
     sample_cone,
     sample_cosine_hemisphere,
     sample_disk,
@@ -62,7 +65,22 @@ def make_probes(precision):
         out_world[i] = to_world(v[0], v[1], v[2], axes[i])
         out_solid_angle[i] = cone_solid_angle(v[0] * v[0])
 
-    return SimpleNamespace(draw=draw, turn=turn, types=types)
+    @wp.kernel(**options)
+    def invert(
+        u: wp.array2d(dtype=real), sin2_half: real, axis: vec3, out: wp.array2d(dtype=real)
+    ):
+        i = wp.tid()
+        x, y = sample_disk(u[i, 0], u[i, 1])
+        s, t = disk_square(x, y)
+        out[i, 0] = s
+        out[i, 1] = t
+        x1, y1, z1 = sample_cone(u[i, 0], u[i, 1], sin2_half)
+        x2, y2, z2 = from_world(to_world(x1, y1, z1, axis), axis)
+        s1, t1 = cone_square(x2, y2, z2, sin2_half)
+        out[i, 2] = s1
+        out[i, 3] = t1
+
+    return SimpleNamespace(draw=draw, turn=turn, invert=invert, types=types)
 
 
 @pytest.fixture(params=["float64", "float32"])
@@ -228,3 +246,27 @@ def test_solid_angle_of_a_cone(precision):
     _, solid_angle = turned(precision, local, np.tile([0.0, 0.0, 1.0], (3, 1)))
     expected = [2.0 * np.pi, 4.0 * np.pi, np.pi * 5e-6**2]
     np.testing.assert_allclose(solid_angle, expected, rtol=4 * eps(precision) + 1e-11)
+
+
+@pytest.mark.parametrize("half_angle", [1e-6, 0.3, np.pi])
+@pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (0.6, 0.0, -0.8), (-0.36, 0.48, 0.8)])
+def test_squares_are_what_was_drawn_from(precision, half_angle, axis):
+    # Midpoints and the edges between the map's four sectors, but for the corners of the disk's
+    # square, where the whole sphere's map ends in one point.
+    u = (np.indices((41, 41)).reshape(2, -1).T + 0.5) / 41.0
+    probes = make_probes(precision)
+    real = probes.types.real
+    numbers = wp.array(np.ascontiguousarray(u, dtype=precision), dtype=real, device="cpu")
+    out = wp.zeros((len(u), 4), dtype=real, device="cpu")
+    sin2_half = float(np.sin(0.5 * half_angle) ** 2)
+    inputs = [numbers, sin2_half, probes.types.vec3(*axis), out]
+    wp.launch(probes.invert, dim=len(u), inputs=inputs, device="cpu")
+    found = out.numpy().astype(np.float64)
+    # Some ten roundings; in a narrow cone ε of a unit vector is ε/θ of its disk.
+    np.testing.assert_allclose(found[:, :2], u, atol=10.0 * eps(precision))
+    blur = 10.0 * eps(precision) * (1.0 + 1.0 / half_angle)
+    if half_angle == np.pi:
+        # Near the far pole ε moves 1 + z by ε, and a point of the disk by ε/√(1 + z).
+        blur = 10.0 * np.sqrt(eps(precision))
+    if blur < 0.1:
+        np.testing.assert_allclose(found[:, 2:], u, atol=blur)
