@@ -207,8 +207,9 @@ def _of_photons(
     photons = max(PASS_PHOTONS, int(setup.settings.photons or 1))
     large = setup.with_settings(photons=photons)
     start, passes = time.process_time(), []
+    lamps = workshop.lamps(large, seeds.take())
     while True:
-        batch = workshop.trace(large, seeds.take(), 0)
+        batch = workshop.trace(large, lamps, seeds.take(), 0)
         passes.append(bin_chain(select_chain(batch, chain), chain))
         mean, noise = _mean_and_noise(passes)
         done = noise <= goal or time.process_time() - start > cpu_s

@@ -56,10 +56,10 @@ def _preface(outcome: Outcome) -> list[str]:
         f"{outcome.cpu_s:.0f} CPU-seconds. Its centre has {centre.photons:,} photons in each of "
         f"{centre.passes} passes: {_multiple(outcome.scale)} of the scene's own photons, and its "
         "own passes. One axis at a time is varied around it, and photons and passes together.",
-        "Time is CPU time of the whole process over all threads, spent on tracing, the photon map "
-        "and the gather, or on tracing and binning; compiling is not counted. Of the picture, "
-        f"{outcome.coverage:.2g} of the rows were exposed, spread evenly over its height, and the "
-        "gather's time is multiplied to that of the whole picture.",
+        "Time is CPU time of the whole process over all threads, spent on tracing (its pilot "
+        "included), the photon map and the gather, or on tracing and binning; compiling is not "
+        f"counted. Of the picture, {outcome.coverage:.2g} of the rows were exposed, spread evenly "
+        "over its height, and the gather's time is multiplied to that of the whole picture.",
         f"Every point was run {outcome.plan.replicates} times, with seeds that nothing else uses. "
         "Intervals hold the true value with probability 95%: Student's t over the replicates, and "
         "of slopes over the residuals of the fit. Noise is the replicates' scatter; bias is what "

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import scenes
 import sim.study.standard_axes as standard
 from sim.image.exposure import automatic_stops
+from sim.photons.photon_batch import PhotonBatch
 from sim.settings import RenderSettings
 from sim.study.glass_chain import GlassChain, find_chain
 from sim.study.metrics import centroid_error, ciede2000, energy_residual
@@ -66,7 +67,7 @@ def run_study(scene: scenes.Scene, plan: Plan, *, seed: int, threads: int, tell:
     if centre.settings.radius is None:
         centre = centre.with_settings(radius=workshop.radius(centre))
     workshop.chain = find_chain(
-        scene, workshop.trace(centre, seeds.take(), 0), cells=plan.cells, bands=plan.bands
+        scene, _pilot(workshop, centre, seeds.take()), cells=plan.cells, bands=plan.bands
     )
     results: tuple[ResultKind, ...] = RESULTS if workshop.chain else ("picture",)
     default = centre.settings
@@ -110,6 +111,11 @@ def run_study(scene: scenes.Scene, plan: Plan, *, seed: int, threads: int, tell:
         coverage=exposed, bins_text=_bins_text(workshop.chain), rows=tuple(rows),
         references=references, photon_noise=photon_noise,
     )
+
+
+def _pilot(workshop: Workshop, centre: Setup, seed: int) -> PhotonBatch:
+    """Photons that show where light goes, and are not used again."""
+    return workshop.trace(centre, workshop.lamps(centre, seed), seed, 0)
 
 
 def _calibrated(

@@ -1,7 +1,8 @@
 """Where a study does its work: one setup, one seed, both results, and what they cost.
 
-What is timed is tracing, the photon map and the gather, or the binning, in CPU-seconds of the
-whole process over all threads. Compiling, surveying the view and reading results out are not.
+What is timed is tracing, with the pilot that aims it, and the photon map and the gather, or the
+binning, in CPU-seconds of the whole process over all threads. Compiling, surveying the view and
+reading results out are not.
 
 Pictures are exposed on some of their rows alone, spread evenly over the height, each at full
 resolution; the gather's cost is multiplied by the ratio of rows, so that it is that of the whole
@@ -29,10 +30,12 @@ from sim.image.survey import Survey, make_measure_footprints, survey_view
 from sim.launch import load_kernels
 from sim.method import Method
 from sim.photons.energy import EnergyBooks
+from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
 from sim.photons.photon_batch import PhotonBatch
 from sim.photons.photon_map import build_photon_map, make_collect, make_reorder
 from sim.photons.photon_path import make_trace_photons
+from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.render import gather_radius, radius_shrinkage
@@ -112,7 +115,6 @@ class Workshop:
         self.mesh_nodes = (4, 4)
         self._device = start_device("cpu")
         self._benches: dict[tuple[int, str, Method], _Bench] = {}
-        self._lamps: dict[tuple[int, int, bool], Lamps] = {}
         self._films: dict[tuple[int, int], Film] = {}
 
     def bench(self, setup: Setup) -> _Bench:
@@ -143,7 +145,8 @@ class Workshop:
             if setup.estimator == "gather":
                 makes.append(make_gather_bins)
             for kernel in [make(precision, features) for make in makes] + [
-                make_collect(precision), make_reorder(precision)
+                make_collect(precision), make_reorder(precision),
+                make_retrace_emission(precision, setup.method.sampler),
             ]:
                 kernels[id(kernel)] = kernel
         load_kernels(list(kernels.values()), device=self._device, threads=self.threads)
@@ -152,23 +155,23 @@ class Workshop:
         """The gather radius that the view suggests [m]."""
         return gather_radius(self.bench(setup).survey)
 
-    def lamps(self, setup: Setup) -> Lamps:
-        """The lamps of a setup, with the streams that its photons make."""
-        bench, photons = self.bench(setup), int(setup.settings.photons or 1)
-        direct = setup.settings.direct_light == "photons"
-        key = (id(bench), photons, direct)
-        if key not in self._lamps:
-            edges = np.asarray(setup.scene.film.edges_nm)
-            self._lamps[key] = compile_lamps(
-                bench.compiled, edges, photons, view=bench.survey, direct=direct
-            )
-        return self._lamps[key]
+    def lamps(self, setup: Setup, seed: int) -> Lamps:
+        """The lamps of one run: as a rendering makes them, with a pilot of its own."""
+        bench, settings = self.bench(setup), setup.settings
+        photons, edges = int(settings.photons or 1), np.asarray(setup.scene.film.edges_nm)
+        if settings.direct_light == "photons":
+            return compile_lamps(bench.compiled, edges, photons, view=bench.survey)
+        return compile_guided_lamps(
+            bench.compiled, edges, photons, view=bench.survey, seed=seed,
+            max_interactions=int(settings.max_interactions or 1), threads=self.threads,
+            total=photons * int(settings.passes or 1),
+        )
 
-    def trace(self, setup: Setup, seed: int, pass_index: int) -> PhotonBatch:
+    def trace(self, setup: Setup, lamps: Lamps, seed: int, pass_index: int) -> PhotonBatch:
         """One pass of photons."""
         return trace_photons(
             self.bench(setup).compiled,
-            self.lamps(setup),
+            lamps,
             seed=seed,
             pass_index=pass_index,
             max_interactions=int(setup.settings.max_interactions or 1),
@@ -208,7 +211,7 @@ class Workshop:
 
     def film(self, setup: Setup) -> Film:
         """An unexposed film of the setup's size; one is used again and again."""
-        film, lamps = setup.scene.film, len(self.lamps(setup).spectra)
+        film, lamps = setup.scene.film, len(setup.scene.emitters)
         passes = int(setup.settings.passes or 1)
         key = (film.bands, lamps)
         if key not in self._films:
@@ -216,8 +219,10 @@ class Workshop:
             self._films[key] = create_film(
                 film.height, film.width, edges, lamps, self._device, passes=passes
             )
-        # What earlier passes left is overwritten by the first sample of a mean.
-        return replace(self._films[key], turns=turns_of(passes), passes=0)
+        used = self._films[key]
+        used.data.mean.zero_()
+        used.data.tally.zero_()
+        return replace(used, turns=turns_of(passes), passes=0)
 
     def _run_mesh(self, setup: Setup, seed: int) -> Sample:
         """The bins by a caustic mesh, with the error that it states of itself."""
@@ -243,9 +248,11 @@ class _Run:
     ) -> None:
         self.workshop, self.setup = workshop, setup
         self.seed = self.camera_seed = seed
-        self.bench, self.lamps = workshop.bench(setup), workshop.lamps(setup)
         self.chain = workshop.chain if "bins" in results else None
+        self.bench = workshop.bench(setup)
         self.costs = Costs()
+        with _cpu_time(self.costs, "trace"):
+            self.lamps = workshop.lamps(setup, seed)
         self.books: list[EnergyBooks] = []
         self.binned: list[FloatArray] = []
         self.film = workshop.film(setup) if "picture" in results else None
@@ -258,7 +265,7 @@ class _Run:
     def add_pass(self, pass_index: int) -> None:
         """Trace a pass, and add it to both results."""
         with _cpu_time(self.costs, "trace"):
-            batch = self.workshop.trace(self.setup, self.seed, pass_index)
+            batch = self.workshop.trace(self.setup, self.lamps, self.seed, pass_index)
         self.books.append(batch.books)
         if self.chain is not None:
             with _cpu_time(self.costs, "bin"):
