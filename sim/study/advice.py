@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
-from sim.study.outcome import Effect, Outcome, effects, ladder_rows, saving, slopes
+from sim.study.findings import Effect, effects, saving, slopes
+from sim.study.outcome import AMOUNTS, Outcome
 from sim.study.setup import ResultKind
 
 __all__ = ["advise"]
 
 _NAMES: dict[ResultKind, str] = {"bins": "irradiance on the receiver", "picture": "picture"}
-_AMOUNTS = ("photons", "passes", "photons × passes")
 _SAVES = 0.95
 """A value saves time if it takes less than this part of the centre's."""
 
@@ -46,7 +44,7 @@ def _first_turn(outcome: Outcome, result: ResultKind) -> list[str]:
 
 def _verdicts(found: list[Effect]) -> list[str]:
     """What is clearly worth it, and what clearly is not."""
-    choices = [one for one in found if one.row.axis not in _AMOUNTS]
+    choices = [one for one in found if one.row.axis not in AMOUNTS]
     better = [one for one in choices if one.ratio.high < 1.0]
     worse = [one for one in choices if one.ratio.low > 1.0]
     alike = [one for one in choices if one.ratio.low <= 1.0 <= one.ratio.high]
@@ -75,7 +73,7 @@ def _without_saving(found: list[Effect]) -> list[str]:
     """What costs accuracy and saves no time."""
     bad = [
         one for one in found
-        if one.row.axis not in _AMOUNTS and one.time > _SAVES and one.ratio.low > 1.0
+        if one.row.axis not in AMOUNTS and one.time > _SAVES and one.ratio.low > 1.0
     ]
     biased = [
         one for one in found
@@ -110,19 +108,15 @@ def _limits(outcome: Outcome, result: ResultKind) -> list[str]:
             f"[{slope.low:.2f}, {slope.high:.2f}]: what is left is the photons'. The rest is the "
             "camera's own sampling of pixels, which passes lower and photons do not."
         )
-    factors = saving(outcome) if result == "bins" else []
+    factors = saving(outcome, result)
     if factors:
-        row, factor = max(
-            (one for one in factors if math.isfinite(one[1].value)), key=lambda one: one[0].photons
-        )
-        low = ladder_rows(outcome.of("bins"))[0]
-        at_low = next(one for one in factors if one[0] is low)[1]
+        (few, at_few), (many, at_many) = factors[0], factors[-1]
+        of_what = "error" if result == "bins" else "noise of the photons"
         said.append(
             "Random numbers, unaimed photons and roulette together need "
-            f"{factor.value:.3g} [{factor.low:.3g}, {factor.high:.3g}] times the photons of Sobol "
-            f"points, aiming and branch weights for the same error at {row.photons:,} photons a "
-            f"pass, and {at_low.value:.3g} [{at_low.low:.3g}, {at_low.high:.3g}] times at "
-            f"{low.photons:,}."
+            f"{at_many.value:.3g} [{at_many.low:.3g}, {at_many.high:.3g}] times the photons of "
+            f"Sobol points, aiming and branch weights for the same {of_what} at {many:,} photons a "
+            f"pass, and {at_few.value:.3g} [{at_few.low:.3g}, {at_few.high:.3g}] times at {few:,}."
         )
     return said
 

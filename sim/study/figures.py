@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim.study.outcome import PLAIN_LADDER, Effect, Outcome, Row, effects, ladder_rows, slopes
+from sim.study.findings import Effect, effects, slopes
+from sim.study.outcome import PLAIN_LADDER, Outcome, Row, ladder_rows
 from sim.study.plan import CENTRE
 from sim.study.setup import ResultKind
 
@@ -97,8 +98,9 @@ def draw_parts(outcome: Outcome, result: ResultKind) -> Figure:
             law = laws[name]
             axes.plot(photons, [law.at(n).value for n in photons], color=colour, linewidth=0.8)
     if outcome.photon_noise and result == "picture":
-        found = np.array(outcome.photon_noise, dtype=float)
-        axes.plot(found[:, 0], found[:, 1], "s--", color="tab:green", markersize=4, linewidth=0.8,
+        still = [one for one in outcome.photon_noise if not one.plain]
+        axes.plot([one.photons for one in still], [one.noise for one in still], "s--",
+                  color="tab:green", markersize=4, linewidth=0.8,
                   label=_with_slope("photon noise", laws) + ", camera held still")
     plain = [row for row in outcome.of(result) if row.axis == PLAIN_LADDER]
     if plain:

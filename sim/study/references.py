@@ -3,9 +3,6 @@
 The bins' reference is a caustic mesh, refined while its time lasts, or the mean of large passes of
 photons, whichever states the smaller error: the mesh's comes from halving it, the photons' from
 the scatter of passes, and where both are there, their distance checks one against the other.
-
-The picture's is a long run at half the gather radius. Its noise comes from the scatter of its
-parts, its bias from a second kernel (Schucany & Sommers 1977, JASA 72, 420).
 """
 
 from __future__ import annotations
@@ -26,12 +23,23 @@ from sim.study.metrics import relative_l2
 from sim.study.setup import SeedSource, Setup
 from sim.study.workshop import Workshop
 
-__all__ = ["MeshReference", "Reference", "bins_reference", "mesh_reference", "picture_reference"]
+__all__ = [
+    "FEWEST",
+    "MESH",
+    "MeshReference",
+    "Reference",
+    "bins_reference",
+    "mean_and_noise",
+    "mesh_reference",
+]
 
 FloatArray = npt.NDArray[np.float64]
 
 PASS_PHOTONS = 1 << 20
 """Photons in a pass of a reference: long sequences are worth more than many."""
+
+MESH = "caustic mesh"
+"""Kind of a reference by a mesh."""
 
 FEWEST = 4
 """Replicates of a reference, at least."""
@@ -192,7 +200,7 @@ def _of_mesh(found: MeshReference) -> Reference:
         f"the lamp; halving each tells its error: cells {mesh.mesh_error:.2g}, wavelengths "
         f"{mesh.wavelength_error:.2g}, lamp {mesh.lamp_error:.2g}"
     )
-    return Reference(mesh.irradiance, "caustic mesh", 0.0, mesh.relative_error, how)
+    return Reference(mesh.irradiance, MESH, 0.0, mesh.relative_error, how)
 
 
 def _of_photons(
@@ -211,7 +219,7 @@ def _of_photons(
     while True:
         batch = workshop.trace(large, lamps, seeds.take(), 0)
         passes.append(bin_chain(select_chain(batch, chain), chain))
-        mean, noise = _mean_and_noise(passes)
+        mean, noise = mean_and_noise(passes)
         done = noise <= goal or time.process_time() - start > cpu_s
         if len(passes) >= FEWEST and done:
             break
@@ -222,7 +230,7 @@ def _of_photons(
     return Reference(mean, "photons", noise, 0.0, how)
 
 
-def _mean_and_noise(replicates: list[FloatArray]) -> tuple[FloatArray, float]:
+def mean_and_noise(replicates: list[FloatArray]) -> tuple[FloatArray, float]:
     """The mean of replicates, and its relative L2 noise; infinite from a single one."""
     mean: FloatArray = np.mean(replicates, axis=0)
     n = len(replicates)
@@ -230,44 +238,3 @@ def _mean_and_noise(replicates: list[FloatArray]) -> tuple[FloatArray, float]:
         return mean, math.inf
     scatter = sum(float(np.sum((one - mean) ** 2)) for one in replicates)
     return mean, math.sqrt(scatter / (n * (n - 1)) / float(np.sum(mean**2)))
-
-
-def picture_reference(
-    workshop: Workshop, setup: Setup, seeds: SeedSource, *, goal: float, cpu_s: float
-) -> Reference:
-    """A long run, in independent parts of as many passes as the setup has.
-
-    Args:
-        workshop: to run in.
-        setup: the study's centre.
-        seeds: none of which an estimate uses.
-        goal: relative error of the luminance that is small enough.
-        cpu_s: time to spend, in CPU-seconds.
-    """
-    assert setup.settings.radius is not None and setup.settings.photons is not None
-    fine = setup.with_settings(
-        radius=0.5 * setup.settings.radius, alpha=1.0, photons=4 * setup.settings.photons
-    )
-    start = time.process_time()
-    colours: list[FloatArray] = []
-    biases: list[FloatArray] = []
-    while True:
-        sample = workshop.run(fine, seeds.take(), ("picture",))
-        assert sample.xyz is not None and sample.bias is not None
-        colours.append(sample.xyz)
-        biases.append(sample.bias)
-        _, noise = _mean_and_noise([one[..., 1] for one in colours])
-        done = noise <= goal or time.process_time() - start > cpu_s
-        if len(colours) >= FEWEST and done:
-            break
-    xyz: FloatArray = np.mean(colours, axis=0)
-    luminance = float(np.sum(xyz[..., 1] ** 2))
-    bias, bias_noise = _mean_and_noise(biases)
-    bias2 = float(np.sum(bias**2)) * (1.0 - min(bias_noise**2, 1.0)) / luminance
-    how = (
-        f"{len(colours)} independent runs of {fine.settings.passes} passes of "
-        f"{fine.settings.photons:,} photons at half the gather radius, with other seeds than any "
-        f"estimate; their scatter tells the noise of their mean, {noise:.2g}, and a kernel of half "
-        f"the area its bias, {math.sqrt(bias2):.2g}"
-    )
-    return Reference(xyz, "long run", noise, math.sqrt(bias2), how)

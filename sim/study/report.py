@@ -7,7 +7,8 @@ from html import escape
 
 from sim.study.advice import advise
 from sim.study.figures import draw_effects, draw_front, draw_parts, to_svg
-from sim.study.outcome import REFERENCE_SHARE, Outcome, Row, effects, saving, slopes
+from sim.study.findings import effects, saving, slopes
+from sim.study.outcome import REFERENCE_SHARE, Outcome, Row
 from sim.study.setup import RESULTS, ResultKind
 from sim.study.statistics import Interval
 from sim.study.table import COLUMNS
@@ -71,18 +72,23 @@ def _section(outcome: Outcome, result: ResultKind) -> list[str]:
     """All about one result."""
     parts = [f"<h2>{_HEADINGS[result]}</h2>"]
     if result == "bins":
-        parts.append(_paragraph(outcome.bins_text + "."))
+        parts.append(_paragraph(
+            outcome.bins_text + ". A mesh's time includes the coarser ones that tell its error."
+        ))
     parts += [f"<ul>{''.join(f'<li>{escape(one)}</li>' for one in advise(outcome, result))}</ul>"]
     parts += _about_reference(outcome, result)
     parts += ["<h3>Error against time</h3>", to_svg(draw_front(outcome, result)),
-              "<h3>The Pareto set</h3>", _pareto_table(outcome, result),
+              "<h3>The Pareto set</h3>", _pareto_table(outcome.pareto(result), outcome),
+              _paragraph("Of photons and passes alone, all else as in the centre:"),
+              _pareto_table(outcome.pareto(result, amounts_only=True), outcome),
               "<h3>Noise and bias</h3>", to_svg(draw_parts(outcome, result)),
               _slope_table(outcome, result)]
-    if result == "bins" and saving(outcome):
+    if saving(outcome, result):
         parts += ["<h3>Random, unaimed, roulette</h3>", _paragraph(
             "Photons that this method needs, as a multiple of those of Sobol points, aiming and "
             "branch weights, for the same error. Its photons are independent, so that its error² "
-            "is c/N exactly; c is measured."), _saving_table(outcome)]
+            "is c/N exactly; c is measured. Of the picture it is the photons' part, with the "
+            "camera held still."), _saving_table(outcome, result)]
     parts += ["<h3>Each axis at equal time</h3>", to_svg(draw_effects(outcome, result)),
               _paragraph("error² × time relative to the centre: as many times the photons for the "
                          "same error. It holds for noise; a bias stays whatever is spent."),
@@ -93,7 +99,7 @@ def _section(outcome: Outcome, result: ResultKind) -> list[str]:
 def _about_reference(outcome: Outcome, result: ResultKind) -> list[str]:
     """Which reference, how its error is known, and whether it is small enough."""
     reference = outcome.references[result]
-    smallest = min(row.errors.error.value for row in outcome.of(result))
+    smallest = outcome.smallest_error(result)
     text = f"Errors are measured against a reference, {reference.kind}: {reference.how}. "
     text += f"Its error is {reference.error:.2g}, of the smallest error shown, {smallest:.2g}, "
     text += f"{reference.error / smallest:.2g}. {reference.check}"
@@ -107,13 +113,13 @@ def _about_reference(outcome: Outcome, result: ResultKind) -> list[str]:
     return parts
 
 
-def _pareto_table(outcome: Outcome, result: ResultKind) -> str:
+def _pareto_table(best: list[Row], outcome: Outcome) -> str:
     head = ("point", "photons, of the default", "passes, of the default", "CPU-seconds", "error")
     rows = [
         (row.name, _multiple(row.photons / outcome.default_photons),
          _multiple(row.passes / outcome.default_passes), f"{row.cpu_s.value:.3g}",
          _interval(row.errors.error))
-        for row in outcome.pareto(result)
+        for row in best
     ]
     return _table(head, rows)
 
@@ -131,11 +137,10 @@ def _slope_table(outcome: Outcome, result: ResultKind) -> str:
     )
 
 
-def _saving_table(outcome: Outcome) -> str:
+def _saving_table(outcome: Outcome, result: ResultKind) -> str:
     return _table(
-        ("photons in a pass", "error", "times the photons"),
-        [(f"{row.photons:,}", _interval(row.errors.error), _interval(factor))
-         for row, factor in saving(outcome)],
+        ("photons in a pass", "times the photons"),
+        [(f"{photons:,}", _interval(factor)) for photons, factor in saving(outcome, result)],
     )
 
 

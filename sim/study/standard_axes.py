@@ -152,7 +152,7 @@ for _axis in (
     Axis("sampler", "method", RESULTS, "what photons are drawn from", "sobol", _sampler),
     Axis("branching", "method", RESULTS, "what follows at a boundary", "weights", _branching),
     Axis("aiming", "method", RESULTS, "where photons are sent", "aimed", _aiming),
-    Axis("all three", "method", ("bins",), "sampler, branching and aiming together",
+    Axis("all three", "method", RESULTS, "sampler, branching and aiming together",
          "sobol, weights, aimed", _plain),
     Axis("Fresnel", "method", RESULTS, "reflectance at boundaries", "exact", _fresnel),
     Axis("dispersion", "scene", RESULTS, "the formula of the index", "the scene's", _dispersion),

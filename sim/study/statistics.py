@@ -30,6 +30,7 @@ __all__ = [
     "Errors",
     "Interval",
     "PowerLaw",
+    "certain_errors",
     "fit_power_law",
     "gram_matrix",
     "mean_interval",
@@ -85,8 +86,7 @@ def separate_errors(gram: FloatArray, *, reference_variance: float = 0.0) -> Err
     diagonal = np.diag(gram) - reference_variance
     of_replicate = np.sqrt(np.maximum(np.diag(gram), 0.0))
     if len(gram) < 2:
-        only = Interval(*(math.sqrt(max(float(diagonal[0]), 0.0)),) * 3)
-        return Errors(only, Interval(0.0, 0.0, 0.0), only, of_replicate)
+        return certain_errors(math.sqrt(max(float(diagonal[0]), 0.0)))
 
     def error2(rows: FloatArray) -> float:
         return float(np.mean(np.diag(rows))) - reference_variance
@@ -108,6 +108,12 @@ def separate_errors(gram: FloatArray, *, reference_variance: float = 0.0) -> Err
         _root(_jackknife(gram, bias2)),
         of_replicate,
     )
+
+
+def certain_errors(error: float) -> Errors:
+    """Of a result that chance has no part in: all of its error is bias."""
+    only = Interval(error, error, error)
+    return Errors(only, Interval(0.0, 0.0, 0.0), only, np.array([error]))
 
 
 def mean_interval(values: npt.ArrayLike) -> Interval:

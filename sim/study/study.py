@@ -4,26 +4,24 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 import scenes
 import sim.study.standard_axes as standard
-from sim.image.exposure import automatic_stops
 from sim.photons.photon_batch import PhotonBatch
 from sim.settings import RenderSettings
+from sim.study.comparison import compare_point, compared
 from sim.study.glass_chain import GlassChain, find_chain
-from sim.study.metrics import centroid_error, ciede2000, energy_residual
-from sim.study.outcome import Outcome, Row
+from sim.study.outcome import LADDER, PLAIN_LADDER, Outcome, PhotonNoise
+from sim.study.picture_reference import picture_reference
 from sim.study.plan import CENTRE, Plan, Point, make_points, photon_scale, turns_of_points, work_of
-from sim.study.references import Reference, bins_reference, mesh_reference, picture_reference
+from sim.study.references import Reference, bins_reference, mesh_reference
+from sim.study.sample import Sample
 from sim.study.setup import RESULTS, ResultKind, SeedSource, Setup
-from sim.study.statistics import Interval, gram_matrix, mean_interval, separate_errors
-from sim.study.workshop import Sample, Workshop
-from spectra.srgb import xyz_to_linear_srgb
-from spectra.units import LUMINOUS_EFFICACY_LM_W
+from sim.study.workshop import Workshop
 
 __all__ = ["Tell", "run_study"]
 
@@ -98,7 +96,9 @@ def run_study(scene: scenes.Scene, plan: Plan, *, seed: int, threads: int, tell:
         )
     tell("compare")
     rows = [
-        _row(bundle, result, references[result], workshop.chain, scene)
+        compare_point(
+            bundle.point, bundle.samples, result, references[result], workshop.chain, scene
+        )
         for result in results
         for bundle in bundles
         if result in bundle.point.results
@@ -167,28 +167,32 @@ def _run_points(
 
 def _photon_noise(
     workshop: Workshop, points: list[Point], plan: Plan, seeds: SeedSource, tell: Tell
-) -> list[tuple[int, float]]:
-    """Noise of the picture's luminance along the photons' ladder, with the camera held still.
+) -> list[PhotonNoise]:
+    """Noise of the picture's luminance along the photons' ladders, with the camera held still.
 
     All of these runs share the camera's random numbers, and with them its noise, so that what is
     left between them is the photons'.
     """
     camera_seed = seeds.take()
-    ladder = [point for point in points if point.axis in (CENTRE, "photons")]
+    replicates = max(3, plan.replicates // 2)
     found = []
-    for point in sorted(ladder, key=lambda one: one.setup.photons_total):
-        tell(f"photons' part of the noise: {point.value}")
+    for point in points:
+        if point.axis not in (CENTRE, LADDER, PLAIN_LADDER) or "picture" not in point.results:
+            continue
+        tell(f"photons' part of the noise: {point.axis} {point.value}")
         colours = []
-        for _ in range(max(2, plan.replicates // 2)):
-            sample = workshop.run(
-                point.setup, seeds.take(), ("picture",), camera_seed=camera_seed
-            )
-            assert sample.xyz is not None
-            colours.append(sample.xyz[..., 1])
+        for _ in range(replicates):
+            sample = workshop.run(point.setup, seeds.take(), ("picture",), camera_seed=camera_seed)
+            colours.append(compared(sample, "picture"))
         mean = np.mean(colours, axis=0)
-        noise2 = float(np.sum(np.var(colours, axis=0, ddof=1))) / float(np.sum(mean**2))
-        found.append((int(point.setup.settings.photons or 1), float(np.sqrt(noise2))))
-    return found
+        off = np.array([np.sum((one - mean) ** 2) for one in colours]) / np.sum(mean**2)
+        found.append(
+            PhotonNoise(
+                point.axis == PLAIN_LADDER, int(point.setup.settings.photons or 1),
+                int(point.setup.settings.passes or 1), off * replicates / (replicates - 1.0),
+            )
+        )
+    return sorted(found, key=lambda one: (one.plain, one.photons))
 
 
 def _goal(bundles: list[_Bundle], result: ResultKind) -> float:
@@ -202,90 +206,10 @@ def _goal(bundles: list[_Bundle], result: ResultKind) -> float:
 
 
 def _noise(bundle: _Bundle, result: ResultKind) -> float:
-    values = [_compared(sample, result) for sample in bundle.samples]
+    values = [compared(sample, result) for sample in bundle.samples]
     mean = np.mean(values, axis=0)
     square = float(np.sum(mean**2))
     return float(np.sqrt(np.sum(np.var(values, axis=0, ddof=1)) / square)) if square else 1.0
-
-
-def _compared(sample: Sample, result: ResultKind) -> FloatArray:
-    """What relative L2 errors are taken of: irradiance, or luminance."""
-    if result == "bins":
-        assert sample.irradiance is not None
-        return sample.irradiance
-    assert sample.xyz is not None
-    luminance: FloatArray = sample.xyz[..., 1]
-    return luminance
-
-
-def _row(
-    bundle: _Bundle, result: ResultKind, reference: Reference, chain: GlassChain | None,
-    scene: scenes.Scene,
-) -> Row:
-    """A point's replicates against the reference."""
-    point, samples = bundle.point, bundle.samples
-    expected = reference.values if result == "bins" else reference.values[..., 1]
-    gram = gram_matrix([_compared(one, result) for one in samples], expected)
-    settings = point.setup.settings
-    cpu_s = np.array([one.costs.of(result) for one in samples])
-    costs = [one.costs for one in samples]
-    residuals = [energy_residual(one.books) for one in samples if one.books is not None]
-    row = Row(
-        axis=point.axis, value=point.value, result=result,
-        photons=int(settings.photons or 0), passes=int(settings.passes or 0),
-        errors=separate_errors(gram, reference_variance=reference.variance),
-        cpu_s=_certain(cpu_s), cpu_of_replicate=cpu_s,
-        parts_s=tuple(float(part) for part in np.mean([astuple(one) for one in costs], axis=0)),
-        energy_residual=max(residuals, default=float("nan")),
-    )
-    if result == "picture":
-        return _with_colours(row, samples, reference, scene)
-    assert chain is not None
-    return replace(row, centroid_arcsec=_centroids(samples, reference, chain, scene))
-
-
-def _with_colours(
-    row: Row, samples: list[Sample], reference: Reference, scene: scenes.Scene
-) -> Row:
-    """The row with its colour differences at the scene's exposure, else at the reference's."""
-    expected = xyz_to_linear_srgb(reference.values / LUMINOUS_EFFICACY_LM_W)
-    stops = scene.film.exposure_stops
-    stops = automatic_stops(expected) if stops is None else stops
-    found = [
-        ciede2000(
-            xyz_to_linear_srgb(one.xyz / LUMINOUS_EFFICACY_LM_W), expected,
-            exposure_stops=stops, gamut=scene.film.gamut,
-        )
-        for one in samples
-        if one.xyz is not None
-    ]
-    return replace(
-        row, ciede_mean=_certain(np.array([one.mean for one in found])),
-        ciede_p95=_certain(np.array([one.p95 for one in found])),
-    )
-
-
-def _centroids(
-    samples: list[Sample], reference: Reference, chain: GlassChain, scene: scenes.Scene
-) -> Interval:
-    """Root mean square over bands of the centroids' error, seen from the middle of the glass."""
-    glass = [
-        item.shape.bounding_sphere()[0]
-        for item in scene.objects
-        if isinstance(item.material, scenes.Dielectric) and not isinstance(item.shape, scenes.Plane)
-    ]
-    centres, seen_from = chain.bins.bin_centres(), np.mean(glass, axis=0)
-    errors = []
-    for one in samples:
-        assert one.irradiance is not None
-        angles = centroid_error(one.irradiance, reference.values, centres, seen_from)
-        errors.append(float(np.sqrt(np.nanmean(angles**2))) if np.isfinite(angles).any() else 0.0)
-    return _certain(np.array(errors))
-
-
-def _certain(values: FloatArray) -> Interval:
-    """Mean with its interval; a single value, which chance has no part in, is its own."""
-    return mean_interval(values) if len(values) > 1 else Interval(*(float(values[0]),) * 3)
 
 
 def _bins_text(chain: GlassChain | None) -> str:

@@ -11,9 +11,7 @@ picture.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -43,49 +41,13 @@ from sim.scene_data import CompiledScene, compile_scene
 from sim.study.caustic_mesh import Resolution, trace_caustic_mesh
 from sim.study.glass_chain import ChainPhotons, GlassChain, bin_chain, select_chain
 from sim.study.receiver_gather import gather_bins, make_gather_bins
+from sim.study.sample import Costs, Sample
 from sim.study.setup import ResultKind, Setup
 from spectra.observer import observer
 
-__all__ = ["Costs", "Sample", "Workshop"]
+__all__ = ["Workshop"]
 
 FloatArray = npt.NDArray[np.float64]
-
-
-@dataclass
-class Costs:
-    """CPU-seconds of a run, by what they were spent on; `gather` is that of the whole picture."""
-
-    trace: float = 0.0
-    bin: float = 0.0
-    map: float = 0.0
-    gather: float = 0.0
-
-    def of(self, result: ResultKind) -> float:
-        """What a result costs by itself."""
-        if result == "bins":
-            return self.trace + self.bin
-        return self.trace + self.map + self.gather
-
-
-@dataclass(frozen=True, eq=False)
-class Sample:
-    """One replicate.
-
-    Attributes:
-        seed: which.
-        irradiance: (rows, columns, bands) of the bins [W m⁻² nm⁻¹], or None.
-        xyz: (rows, width, 3) of the picture's rows, or None.
-        bias: (rows, width) that the gather itself estimates of their luminance [cd/m²], or None.
-        books: where the energy went; None without photons.
-        costs: what it took.
-    """
-
-    seed: int
-    irradiance: FloatArray | None
-    xyz: FloatArray | None
-    bias: FloatArray | None
-    books: EnergyBooks | None
-    costs: Costs
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,7 +191,7 @@ class Workshop:
         chain, costs = self.chain, Costs()
         assert chain is not None and self.target is not None
         wavelengths, lamp_points = self.mesh_nodes
-        with _cpu_time(costs, "trace"):
+        with costs.timing("trace"):
             mesh = trace_caustic_mesh(
                 self.bench(setup).compiled, chain.bins, emitter=chain.emitter, target=self.target,
                 edges_nm=chain.edges_nm, branches=("refract",) * chain.refractions,
@@ -237,7 +199,9 @@ class Workshop:
                     cells=setup.mesh_cells, wavelengths=wavelengths, lamp_points=lamp_points
                 ),
             )
-        return Sample(seed, mesh.irradiance, None, None, None, costs)
+        return Sample(
+            seed, mesh.irradiance, None, None, None, costs, stated_error=mesh.relative_error
+        )
 
 
 class _Run:
@@ -251,7 +215,7 @@ class _Run:
         self.chain = workshop.chain if "bins" in results else None
         self.bench = workshop.bench(setup)
         self.costs = Costs()
-        with _cpu_time(self.costs, "trace"):
+        with self.costs.timing("trace"):
             self.lamps = workshop.lamps(setup, seed)
         self.books: list[EnergyBooks] = []
         self.binned: list[FloatArray] = []
@@ -264,11 +228,11 @@ class _Run:
 
     def add_pass(self, pass_index: int) -> None:
         """Trace a pass, and add it to both results."""
-        with _cpu_time(self.costs, "trace"):
+        with self.costs.timing("trace"):
             batch = self.workshop.trace(self.setup, self.lamps, self.seed, pass_index)
         self.books.append(batch.books)
         if self.chain is not None:
-            with _cpu_time(self.costs, "bin"):
+            with self.costs.timing("bin"):
                 self.binned.append(self._bin(batch, self.chain, pass_index))
         if self.film is not None:
             self._expose(batch, self.film, pass_index)
@@ -299,10 +263,10 @@ class _Run:
 
     def _expose(self, batch: PhotonBatch, film: Film, pass_index: int) -> None:
         """Expose the picture's rows to the pass."""
-        with _cpu_time(self.costs, "map"):
+        with self.costs.timing("map"):
             direct = self.setup.settings.direct_light == "lamps"
             lights = self._lights(batch, pass_index, direct=direct)
-        with _cpu_time(self.costs, "gather", times=film.height / len(self.rows)):
+        with self.costs.timing("gather", times=film.height / len(self.rows)):
             expose(
                 film, self.bench.compiled, self.bench.camera, lights, seed=self.camera_seed,
                 pass_index=pass_index, threads=self.workshop.threads,
@@ -326,12 +290,3 @@ class _Run:
 def _only(batch: PhotonBatch, photons: ChainPhotons) -> PhotonBatch:
     """A batch of nothing but these photons."""
     return replace(batch, slots=photons.slots)
-
-
-@contextmanager
-def _cpu_time(costs: Costs, what: str, *, times: float = 1.0) -> Iterator[None]:
-    """Add the process's CPU time of the block to one of the costs, multiplied."""
-    start = time.process_time()
-    yield
-    spent = time.process_time() - start
-    setattr(costs, what, getattr(costs, what) + times * spent)

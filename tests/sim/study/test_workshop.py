@@ -85,7 +85,7 @@ def test_gathering_over_a_bin_gives_what_is_in_it(workshop, setup):
 
 def test_costs_count_what_was_done_and_scale_the_gather(workshop, setup, monkeypatch):
     clock = iter(range(1000))
-    monkeypatch.setattr("sim.study.workshop.time.process_time", lambda: float(next(clock)))
+    monkeypatch.setattr("sim.study.sample.time.process_time", lambda: float(next(clock)))
     costs = workshop.run(setup, 6, RESULTS).costs
     # Each timed block takes one tick: the lamps and two passes; half of the rows are exposed.
     assert (costs.trace, costs.bin, costs.map, costs.gather) == (3.0, 2.0, 2.0, 4.0)
