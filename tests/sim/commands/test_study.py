@@ -130,12 +130,16 @@ def test_the_page_is_whole_and_needs_nothing_else(study):
         (["bench.toml", "-o", "bench.toml"], "bench.toml"),
         (["bench.toml", "--threads", "0"], "threads"),
         (["dark.toml"], "emitters"),
+        (["bench.toml", "-o", "taken"], "study.csv"),
     ],
 )
 def test_what_cannot_be_done_is_told_in_a_line(study, capfd, monkeypatch, arguments, message):
     monkeypatch.chdir(study.parent)
     text = (study.parent / "bench.toml").read_text("utf-8")
     (study.parent / "dark.toml").write_text(text.partition("[[emitters]]")[0], "utf-8")
+    (study.parent / "taken" / "study.csv").mkdir(parents=True, exist_ok=True)
+    # It is told before any work.
+    monkeypatch.setattr("sim.study.study.run_study", lambda *_, **__: pytest.fail("it ran"))
     before = sorted(os.listdir(study.parent))
     assert main(["study", *arguments, "--quick"]) == 2
     error = capfd.readouterr().err
