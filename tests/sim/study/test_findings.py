@@ -100,6 +100,16 @@ def test_the_plain_methods_need_is_counted_in_photons(outcome):
     assert [factor.value for _, factor in saving(picture, "picture")] == pytest.approx([70.0, 70.0])
 
 
+def test_with_the_camera_held_still_the_slope_is_the_photons_own(outcome):
+    rows = tuple(dataclasses.replace(row, result="picture") for row in outcome.rows)
+    still = [PhotonNoise(False, n, 8, np.full(3, n**-1.2)) for n in (250, 1000, 4000)]
+    plain = [PhotonNoise(True, n, 8, np.full(3, 50.0 / n)) for n in (250, 4000)]
+    picture = dataclasses.replace(outcome, rows=rows, photon_noise=[*still, *plain])
+    law = slopes(picture, "picture")["photon noise"]
+    assert law.slope.value == pytest.approx(-0.6)
+    assert law.points == 3
+
+
 def test_advice_follows_from_the_numbers(outcome):
     text = "\n".join(advise(outcome, "bins"))
     sentence = {line.partition(":")[0]: line for line in advise(outcome, "bins")}
