@@ -13,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from sim.commands import explain, glass, info, render, scenes, schema, trace
+from sim.commands import explain, glass, info, render, scenes, schema, study, trace
 from sim.native_output import end_silence
 from sim.version import VERSION
 
@@ -27,6 +27,7 @@ _COMMANDS = {
     "glass": glass,
     "info": info,
     "schema": schema,
+    "study": study,
 }
 
 _SUCCESS = 0

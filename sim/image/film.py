@@ -1,6 +1,6 @@
 """The film: radiance of each pixel and band, averaged over passes, with its spread."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +10,7 @@ import warp as wp
 
 from sim.image.accuracy import Accuracy
 from sim.image.camera_path import make_film_struct, make_render_camera
-from sim.launch import cut_ranges, launch_ranges
+from sim.launch import Range, cut_ranges, launch_ranges
 from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 
@@ -125,6 +125,7 @@ def expose(
     seed: int,
     pass_index: int,
     threads: int,
+    pixels: Sequence[Range] | None = None,
     on_done: Callable[[int], None] | None = None,
 ) -> None:
     """Expose `film` to one pass: a camera path a pixel, gathering from `lights`.
@@ -138,6 +139,7 @@ def expose(
         pass_index: decides the position within the pixels and the bands; a round of turns starts
             at a multiple of their number.
         threads: CPU threads.
+        pixels: ranges of those to expose, row by row; None: all.
         on_done: told of finished pixels.
     """
     data = film.data
@@ -148,7 +150,7 @@ def expose(
     inputs = [compiled.data, camera, lights, data]
     launch_ranges(
         make_render_camera(compiled.precision, compiled.features),
-        cut_ranges(film.height * film.width, _RANGE_SIZE),
+        cut_ranges(film.height * film.width, _RANGE_SIZE) if pixels is None else pixels,
         lambda _: inputs,
         device=compiled.device,
         threads=threads,

@@ -1,0 +1,77 @@
+"""A scene with its glasses described in another way, to price the description.
+
+References:
+    Cauchy, A.-L. (1836), "Mémoire sur la dispersion de la lumière": n = A + B/λ².
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+
+import scenes
+from scenes.media import DescribedMedium, resolve_medium
+from spectra import Medium
+from spectra.units import NM_PER_UM
+
+__all__ = ["TABLE_STEP_NM", "with_cauchy_media", "with_tabulated_media"]
+
+TABLE_STEP_NM = 20.0
+"""Between the knots of a table: catalogues of glass print about that many."""
+
+_FIT_POINTS = 201
+
+_Describe: TypeAlias = Callable[[Medium, float, float], DescribedMedium]
+
+
+def with_cauchy_media(scene: scenes.Scene) -> scenes.Scene:
+    """The scene with every glass replaced by a Cauchy formula of two terms.
+
+    The terms are fitted over the film's range, by least squares of the index.
+    """
+
+    def fit(medium: Medium, low_nm: float, high_nm: float) -> scenes.CauchyMedium:
+        wavelength_nm = np.linspace(low_nm, high_nm, _FIT_POINTS)
+        terms = np.stack([np.ones(_FIT_POINTS), (NM_PER_UM / wavelength_nm) ** 2], axis=1)
+        a = np.linalg.lstsq(terms, medium.eta(wavelength_nm), rcond=None)[0]
+        return scenes.CauchyMedium(
+            a=tuple(float(one) for one in a), range_nm=(low_nm, high_nm),
+            source=f"two terms fitted to {medium.name}", relative_to=medium.relative_to,
+        )
+
+    return _rewrite(scene, fit)
+
+
+def with_tabulated_media(scene: scenes.Scene) -> scenes.Scene:
+    """The scene with every glass replaced by a table of its index, about every 20 nm."""
+
+    def tabulate(medium: Medium, low_nm: float, high_nm: float) -> scenes.TableMedium:
+        knots = max(2, round((high_nm - low_nm) / TABLE_STEP_NM) + 1)
+        wavelength_nm = np.linspace(low_nm, high_nm, knots)
+        return scenes.TableMedium(
+            wavelength_nm=tuple(float(one) for one in wavelength_nm),
+            eta=tuple(float(one) for one in medium.eta(wavelength_nm)),
+            source=f"a table of {medium.name}", relative_to=medium.relative_to,
+        )
+
+    return _rewrite(scene, tabulate)
+
+
+def _rewrite(scene: scenes.Scene, describe: _Describe) -> scenes.Scene:
+    """The scene with each dispersive medium described by `describe(medium, low_nm, high_nm)`."""
+    low_nm, high_nm = (float(edge) for edge in scene.film.edges_nm[[0, -1]])
+
+    def redescribed(item: scenes.SceneObject) -> scenes.SceneObject:
+        if not isinstance(item.material, scenes.Dielectric):
+            return item
+        medium = resolve_medium(item.material.medium)
+        if not medium.is_dispersive:
+            return item
+        material = scenes.Dielectric.model_validate(
+            {"medium": describe(medium, low_nm, high_nm)}
+        )
+        return item.model_copy(update={"material": material})
+
+    return scene.model_copy(update={"objects": tuple(map(redescribed, scene.objects))})
