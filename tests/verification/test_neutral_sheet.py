@@ -61,7 +61,7 @@ def test_seen_through_the_sheet_it_is_neutral_too():
     # A camera above the sheet follows a path for each band. The second crossing takes another
     # 0.2% of the blue, which is expected here.
     scene = make_scene(camera_y=2.9, pixels=128)
-    picture = sim.render(scene, sim.RenderSettings(photons=120_000, passes=4))
+    picture = sim.render(scene, sim.RenderSettings(photons=300_000, passes=4))
     once = sheet_transmittance(picture)
     assert np.all(np.abs(deviations(picture, once)) < 0.01)
     whole = deviations(picture, once**2).mean(axis=(0, 1))
