@@ -134,7 +134,6 @@ def _compile_lamps(compiled: CompiledScene, survey: Survey, plan: ResolvedSettin
     return compile_guided_lamps(
         compiled, edges_nm, plan.photons, view=survey, seed=plan.seed,
         max_interactions=plan.max_interactions, threads=plan.threads,
-        total=plan.photons * plan.passes,
     )
 
 

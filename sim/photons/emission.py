@@ -6,6 +6,10 @@ in direction ω carries the lamp's flux times ``f(ω) / Σ_j n_j p_j(ω)``, wher
 density. Overlapping targets are thereby counted once, wherever a photon came from, and its flux
 is bounded by that of unaimed emission.
 
+The two numbers that choose a direction, or the point of a beam's profile, are drawn from the
+target's density over their square, where it has one: as densely as the camera looks at a receiver,
+or as a pilot has found (`sim.photons.guidance`). It is part of p_j.
+
 References:
     Veach & Guibas (1995), "Optimally combining sampling techniques", SIGGRAPH, §3.3 eq. (12):
     the balance heuristic over several techniques.

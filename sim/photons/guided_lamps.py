@@ -13,9 +13,10 @@ __all__ = ["compile_guided_lamps"]
 
 FloatArray = npt.NDArray[np.float64]
 
-PILOT_PART = 0.02
-"""A pilot's photons, in parts of all that will be traced; but at least, and at most, as many as
-a density of 32 × 32 cells needs and can use."""
+PILOT_PART = 0.08
+"""A pilot's photons, in parts of a pass's; but at least, and at most, as many as a density of
+32 × 32 cells needs and can use. It does not grow with the passes, so that a picture that was
+stopped after some is the one that was asked for no more."""
 FEWEST = 4096
 MOST = 32768
 
@@ -29,11 +30,10 @@ def compile_guided_lamps(
     seed: int,
     max_interactions: int,
     threads: int,
-    total: int,
 ) -> Lamps:
     """Lamps for a picture whose photons are those that have met glass.
 
-    What is found depends on the scene, the camera, the seed and the numbers of photons alone.
+    What is found depends on the scene, the camera, the seed and the number of photons alone.
 
     Args:
         compiled: the scene.
@@ -43,14 +43,13 @@ def compile_guided_lamps(
         seed: the run's seed.
         max_interactions: surfaces that one photon and all its branches may meet.
         threads: CPU threads.
-        total: photons of all passes, as far as is known: a pilot is a small part of them.
 
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.
     """
     if compiled.features.method.aiming == "unaimed":
         return compile_lamps(compiled, edges_nm, photons, direct=False)
-    scouts = int(np.clip(PILOT_PART * total, FEWEST, MOST))
+    scouts = int(np.clip(PILOT_PART * photons, FEWEST, MOST))
     lamps = compile_lamps(compiled, edges_nm, scouts, view=view, direct=False)
     pilot = trace_pilot(
         compiled, lamps, seed=seed, max_interactions=max_interactions, threads=threads

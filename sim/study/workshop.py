@@ -126,7 +126,6 @@ class Workshop:
         return compile_guided_lamps(
             bench.compiled, edges, photons, view=bench.survey, seed=seed,
             max_interactions=int(settings.max_interactions or 1), threads=self.threads,
-            total=photons * int(settings.passes or 1),
         )
 
     def trace(self, setup: Setup, lamps: Lamps, seed: int, pass_index: int) -> PhotonBatch:

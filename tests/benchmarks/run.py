@@ -132,7 +132,7 @@ class Nephroid:
         survey = survey_view(self.compiled, camera, float(edges_nm.mean()))
         self.lamps = compile_guided_lamps(
             self.compiled, edges_nm, photons, view=survey, seed=SEED,
-            max_interactions=MAX_INTERACTIONS, threads=1, total=photons,
+            max_interactions=MAX_INTERACTIONS, threads=1,
         )
         self.photons = sum(stream.photons for stream in self.lamps.streams)
 

@@ -56,10 +56,10 @@ def view_of(compiled):
     return survey_view(compiled, compile_camera(compiled, scene.camera, scene.film), 550.0)
 
 
-def guided(compiled, *, threads=2, seed=0, total=400_000):
+def guided(compiled, *, threads=2, seed=0):
     return compile_guided_lamps(
         compiled, compiled.scene.film.edges_nm, PHOTONS, view=view_of(compiled), seed=seed,
-        max_interactions=64, threads=threads, total=total,
+        max_interactions=64, threads=threads,
     )
 
 
