@@ -276,11 +276,10 @@ class _Run:
         """The replicate, once all passes are in."""
         xyz = bias = None
         if self.film is not None:
-            shape = self.film.shape
-            radiance = self.film.data.mean.numpy().reshape(shape)[self.rows]
+            radiance = self.film.radiance()[self.rows]
             eye = observer(self.setup.scene.film.observer)
             xyz = eye.xyz(radiance, np.asarray(self.setup.scene.film.edges_nm))
-            bias = self.film.data.tally.numpy().reshape(*shape[:2], 4)[self.rows, :, 2].copy()
+            bias = self.film.accuracy().bias[self.rows]
         irradiance = np.mean(self.binned, axis=0) if self.binned else None
         books = EnergyBooks.mean(self.books)
         return Sample(self.seed, irradiance, xyz, bias, books, self.costs)

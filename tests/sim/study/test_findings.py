@@ -124,9 +124,10 @@ def test_advice_follows_from_the_numbers(outcome):
     useless = sentence["Cost accuracy without saving time"]
     assert "slow: on" in useless
     assert "cheap: on" not in useless
-    biased = next(v for k, v in sentence.items() if k.startswith("Their error is mostly bias"))
+    biased = next(v for k, v in sentence.items() if k.startswith("More biased than the centre"))
     assert "wrong: on" in biased
     assert "slow" not in biased
+    assert "The centre itself" not in text
     assert "Error falls as photons to the power -0.7" in text
     assert "alike: other" in sentence["No difference shows for"]
 
