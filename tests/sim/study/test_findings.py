@@ -155,6 +155,7 @@ def test_a_mesh_is_not_judged_by_a_mesh(small_scene):
         reference = Reference(values, kind, 0.0, 0.0, "")
         row = compare_point(point, [sample], "bins", reference, chain, small_scene)
         assert row.errors.error.value == pytest.approx(expected)
+        assert np.isnan(row.centroid_arcsec.value) == (kind == "caustic mesh")
 
 
 class QuickSettings:
