@@ -5,6 +5,7 @@ from __future__ import annotations
 from sim.study.findings import Effect, effects, saving, slopes
 from sim.study.outcome import AMOUNTS, Outcome
 from sim.study.setup import ResultKind
+from sim.study.statistics import Interval
 
 __all__ = ["advise"]
 
@@ -20,6 +21,7 @@ def advise(outcome: Outcome, result: ResultKind) -> list[str]:
         *_first_turn(outcome, result),
         *_verdicts(found),
         *_without_saving(found),
+        *_biased(found, outcome.centre(result).errors.bias),
         *_limits(outcome, result),
     ]
 
@@ -75,18 +77,20 @@ def _without_saving(found: list[Effect]) -> list[str]:
         one for one in found
         if one.row.axis not in AMOUNTS and one.time > _SAVES and one.ratio.low > 1.0
     ]
-    biased = [
-        one for one in found
-        if one.row.errors.bias.low > 0.0 and one.row.errors.bias.value > one.row.errors.noise.value
-    ]
-    said = []
-    if bad:
-        names = ", ".join(one.row.name for one in _by(bad))
-        said.append(f"Cost accuracy without saving time: {names}.")
-    if biased:
+    names = ", ".join(one.row.name for one in _by(bad))
+    return [f"Cost accuracy without saving time: {names}."] if bad else []
+
+
+def _biased(found: list[Effect], own: Interval) -> list[str]:
+    """What is further off than the centre, however long it runs."""
+    biased = [one for one in found if one.row.errors.bias.low > own.high]
+    names = ", ".join(f"{one.row.name} ({one.row.errors.bias.value:.2g})" for one in biased)
+    said = [f"More biased than the centre, which no time takes away: {names}."] if biased else []
+    if own.low > 0.0:
         said.append(
-            "Their error is mostly bias, which no time takes away: "
-            + ", ".join(f"{one.row.name} ({one.row.errors.bias.value:.2g})" for one in biased) + "."
+            f"The centre itself is off by a bias of {own.value:.2g} [{own.low:.2g}, "
+            f"{own.high:.2g}]: where that is most of the error, a smaller radius is worth more "
+            "than photons."
         )
     return said
 

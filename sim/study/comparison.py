@@ -53,7 +53,8 @@ def compare_point(
     expected = reference.values if result == "bins" else reference.values[..., 1]
     gram = gram_matrix([compared(one, result) for one in samples], expected)
     errors = separate_errors(gram, reference_variance=reference.variance)
-    if samples[0].stated_error is not None and reference.kind == MESH:
+    own_judge = samples[0].stated_error is not None and reference.kind == MESH
+    if samples[0].stated_error is not None and own_judge:
         # One mesh is no judge of another: what it states of itself counts.
         errors = certain_errors(samples[0].stated_error)
     settings = point.setup.settings
@@ -70,7 +71,8 @@ def compare_point(
     )
     if result == "picture":
         return _with_colours(row, samples, reference, scene)
-    assert chain is not None
+    if chain is None or own_judge:
+        return row
     return replace(row, centroid_arcsec=_centroids(samples, reference, chain, scene))
 
 

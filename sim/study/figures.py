@@ -88,7 +88,8 @@ def draw_parts(outcome: Outcome, result: ResultKind) -> Figure:
         lit = known[:, 0] > 0.0
         axes.errorbar(
             photons[lit] * shift, known[lit, 0], yerr=_whiskers(known[lit]), fmt="o", markersize=4,
-            color=colour, linewidth=0, elinewidth=0.8, label=_with_slope(name, laws),
+            color=colour, linewidth=0, elinewidth=0.8,
+            label=_with_slope(name, laws) if lit.any() else None,
         )
         # Where no bias shows, the interval tells how much there could be.
         if not lit.all():

@@ -276,8 +276,7 @@ class _Run:
         """The replicate, once all passes are in."""
         xyz = bias = None
         if self.film is not None:
-            shape = self.film.shape
-            radiance = self.film.data.mean.numpy().reshape(shape)[self.rows]
+            radiance = self.film.radiance()[self.rows]
             eye = observer(self.setup.scene.film.observer)
             xyz = eye.xyz(radiance, np.asarray(self.setup.scene.film.edges_nm))
             bias = self.film.accuracy().bias[self.rows]

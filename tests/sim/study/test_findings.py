@@ -124,9 +124,10 @@ def test_advice_follows_from_the_numbers(outcome):
     useless = sentence["Cost accuracy without saving time"]
     assert "slow: on" in useless
     assert "cheap: on" not in useless
-    biased = next(v for k, v in sentence.items() if k.startswith("Their error is mostly bias"))
+    biased = next(v for k, v in sentence.items() if k.startswith("More biased than the centre"))
     assert "wrong: on" in biased
     assert "slow" not in biased
+    assert "The centre itself" not in text
     assert "Error falls as photons to the power -0.7" in text
     assert "alike: other" in sentence["No difference shows for"]
 
@@ -154,6 +155,7 @@ def test_a_mesh_is_not_judged_by_a_mesh(small_scene):
         reference = Reference(values, kind, 0.0, 0.0, "")
         row = compare_point(point, [sample], "bins", reference, chain, small_scene)
         assert row.errors.error.value == pytest.approx(expected)
+        assert np.isnan(row.centroid_arcsec.value) == (kind == "caustic mesh")
 
 
 class QuickSettings:
