@@ -30,7 +30,7 @@ __all__ = ["PhotonMap", "build_photon_map", "make_collect", "make_map_structs", 
 
 _RANGE_SIZE = 65536
 
-CELLS_A_RADIUS = 1.5
+CELLS_A_RADIUS = 2.0
 """Width of a cell in gather radii. A query for one band finds few photons and costs the cells it
 looks into; one for all bands costs the photons it passes over: this is between the two."""
 
