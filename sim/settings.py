@@ -38,9 +38,14 @@ Preset: TypeAlias = Literal["draft", "standard", "reference"]
 PRESETS: Final[dict[str, dict[str, float]]] = {
     "draft": {"photons": 0.25, "passes": 0.5},
     "standard": {},
-    "reference": {"photons": 4.0, "passes": 8.0},
+    "reference": {"photons": 4.0, "passes": 4.0},
 }
-"""Photons and passes of each preset, in terms of the scene's own or the program's defaults."""
+"""Photons and passes of each preset, in terms of the scene's own or the program's defaults.
+
+Of the gallery's prism, the draft takes a quarter of the standard's CPU time and leaves 1.6 times
+its noise; twice the passes take 2.3 times the time for 0.74 of it, and 4 times the photons in each
+pass, which no longer limit it, 2.6 times the time for 0.97.
+"""
 
 DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256}
 

@@ -8,12 +8,17 @@ One thread is timed by the process's CPU time, two against one by the clock on t
 second ratio wants a machine with nothing else to do: it cannot exceed the cores that the system
 granted the two threads, which are printed below it. Nothing is asserted about speed; but the
 deposits and the energy books of the two programs must be the same to rounding, since only equal
-work compares.
+work compares. `photon_tracer.c` has no lenses: there it is skipped.
+
+``--record`` adds the medians to `history.csv` beside this file, to compare against later.
 """
 
 import argparse
+import csv
+import datetime
 import math
 import os
+import platform
 import shutil
 import statistics
 import subprocess
@@ -41,8 +46,13 @@ from sim.photons.photon_path import COLOURS  # noqa: E402
 from sim.sampling.counter import fold_key  # noqa: E402
 from sim.sampling.sobol import DIMENSIONS, sobol_tables  # noqa: E402
 from sim.scene_data import CompiledScene, compile_scene  # noqa: E402
+from sim.version import VERSION  # noqa: E402
 
-SCENES = ("ball", "prism")
+SCENES = ("ball", "prism", "lens")
+HISTORY = HERE / "history.csv"
+HISTORY_COLUMNS = (
+    "date", "version", "machine", "scene", "photons", "ns_a_photon", "of_c", "two_threads"
+)
 SEED, PASS, MAX_INTERACTIONS = 0, 0, 256
 CFLAGS = ("-O3", "-march=native")
 EQUAL_WORK = 1e-9
@@ -61,8 +71,6 @@ def columns(rows: npt.NDArray[Any], count: int, *names: str) -> FloatArray:
 def sections(compiled: CompiledScene, lamps: Lamps) -> list[FloatArray]:
     """What the C program reads, in its order; every section (rows, columns)."""
     features, data, shine = compiled.features, compiled.data, lamps.data
-    if features.lenses or features.tabulated or features.air_conversion:
-        raise SystemExit("photon_tracer.c: no lenses, tables or conversions of air")
     bodies, media = len(compiled.scene.objects), features.media_count
     emitters, targets = shine.emitters.numpy(), shine.targets.numpy()
     polyhedra = data.polyhedra.numpy()
@@ -188,9 +196,29 @@ def summary(ratios: Sequence[float]) -> str:
     return f"{statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
 
 
-def compare(name: str, photons: int, repetitions: int, compiler: str | None) -> None:
+def can_follow(compiled: CompiledScene) -> bool:
+    """Whether `photon_tracer.c` can trace the scene: no lenses, tables or conversions of air."""
+    features = compiled.features
+    return not (features.lenses or features.tabulated or features.air_conversion)
+
+
+def record(row: Sequence[object]) -> None:
+    """Add a row to the history."""
+    is_new = not HISTORY.exists()
+    with HISTORY.open("a", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        if is_new:
+            writer.writerow(HISTORY_COLUMNS)
+        writer.writerow(row)
+
+
+def compare(
+    name: str, photons: int, repetitions: int, compiler: str | None, *, keep: bool
+) -> None:
     """Run the contestants in turn, and print what their rates make of each other."""
     nephroid = Nephroid(name, photons)
+    if not can_follow(nephroid.compiled):
+        compiler = None
     totals = nephroid.totals()
     against_c: list[float] = []
     threads: list[float] = []
@@ -215,6 +243,11 @@ def compare(name: str, photons: int, repetitions: int, compiler: str | None) -> 
     print(f"  Nephroid / C, 1 thread         {summary(against_c) if against_c else 'skipped'}")
     print(f"  Nephroid, 2 threads / 1 thread {summary(threads)}")
     print(f"    cores it had meanwhile       {summary(cores)}", flush=True)
+    if keep:
+        of_c = f"{statistics.median(against_c):.3f}" if against_c else ""
+        medians = f"{statistics.median(cost):.0f}", of_c, f"{statistics.median(threads):.3f}"
+        today = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
+        record([today, VERSION, platform.machine(), name, nephroid.photons, *medians])
 
 
 def check_equal_work(name: str, ours: FloatArray, theirs: FloatArray) -> None:
@@ -233,12 +266,15 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*", default=SCENES, metavar="SCENE")
     parser.add_argument("--photons", type=int, default=1_000_000)
     parser.add_argument("--repetitions", type=int, default=9)
+    parser.add_argument("--record", action="store_true", help="add the medians to history.csv")
     options = parser.parse_args()
     compiler = os.environ.get("CC") or shutil.which("cc")
     if compiler is None:
         print("No C compiler (cc, or the variable CC): Nephroid / C is skipped.")
     for name in options.scenes:
-        compare(name, options.photons, options.repetitions, compiler)
+        compare(
+            name, options.photons, options.repetitions, compiler, keep=options.record
+        )
 
 
 if __name__ == "__main__":
