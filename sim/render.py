@@ -25,6 +25,7 @@ import scenes
 from sim.canary import choose_kernels
 from sim.device import start_device
 from sim.errors import SettingsError
+from sim.features import Features
 from sim.image.camera import compile_camera
 from sim.image.camera_path import make_render_camera
 from sim.image.film import Film, create_film, expose
@@ -46,7 +47,7 @@ from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
 
-__all__ = ["gather_radius", "render"]
+__all__ = ["compile_lamps_for", "gather_radius", "kernels_of", "radius_shrinkage", "render"]
 
 FOOTPRINTS_A_RADIUS = 2.0
 """The first pass gathers over a disc this many pixel widths in radius."""
@@ -82,10 +83,11 @@ def render(
         compiled = choice.compiled
         edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
         assert scene.camera is not None  # require_renderable has seen to it
-        _load_all_kernels(compiled, plan.threads)
+        kernels = kernels_of(plan.precision, compiled.features)
+        load_kernels(kernels, device=device, threads=plan.threads)
         camera = compile_camera(compiled, scene.camera, scene.film)
         survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
-        lamps = _compile_lamps(compiled, survey, plan)
+        lamps = compile_lamps_for(compiled, survey, plan)
         receivers = compile_receivers(compiled, lamps, edges_nm)
         film = create_film(
             scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device,
@@ -116,17 +118,20 @@ def render(
     )
 
 
-def _load_all_kernels(compiled: CompiledScene, threads: int) -> None:
-    """Compile what a rendering launches, the largest first, on every core."""
+def kernels_of(precision: str, features: Features) -> list[Any]:
+    """What a rendering launches, the largest kernel first."""
     special = (make_render_camera, make_trace_photons, make_measure_footprints)
-    general = (make_collect, make_reorder)
-    kernels = [make(compiled.precision, compiled.features) for make in special]
-    kernels += [make(compiled.precision) for make in general]
-    kernels.append(make_retrace_emission(compiled.precision, compiled.features.method.sampler))
-    load_kernels(kernels, device=compiled.device, threads=threads)
+    return [
+        *(make(precision, features) for make in special),
+        make_collect(precision),
+        make_reorder(precision),
+        make_retrace_emission(precision, features.method.sampler),
+    ]
 
 
-def _compile_lamps(compiled: CompiledScene, survey: Survey, plan: ResolvedSettings) -> Lamps:
+def compile_lamps_for(
+    compiled: CompiledScene, survey: Survey, plan: ResolvedSettings
+) -> Lamps:
     """The lamps, with photons for what they have to show: all light, or what has met glass."""
     edges_nm = np.asarray(compiled.scene.film.edges_nm, dtype=np.float64)
     if plan.direct_light == "photons":

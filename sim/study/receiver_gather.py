@@ -33,7 +33,7 @@ _RANGE_SIZE = 256
 @functools.cache
 def make_patch_struct(precision: str) -> Any:
     """Struct Patch: the bins' rectangle in the local frame."""
-    vec3, real = make_scene_structs(precision).vec3, make_scene_structs(precision).real
+    vec3 = make_scene_structs(precision).vec3
 
     @wp.struct
     class Patch:
@@ -41,7 +41,6 @@ def make_patch_struct(precision: str) -> Any:
         step_u: vec3
         step_v: vec3
         normal: vec3
-        tag: real  # unused but for its type, which tells the sequence's precision
         prim: int
         side: int
         columns: int
@@ -76,7 +75,7 @@ def make_gather_bins(precision: str, features: Features) -> Any:
         sight.band = ALL_BANDS
         sight.weight = real(1.0)
         for k in range(POINTS):
-            x, y = r2_point(hash64(key, wp.uint64(i)), wp.uint32(k), patch.tag)
+            x, y = r2_point(hash64(key, wp.uint64(i)), wp.uint32(k), sight.weight)
             met.point = (
                 patch.corner
                 + patch.step_u * (real(i % patch.columns) + x)

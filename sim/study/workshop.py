@@ -21,22 +21,18 @@ import numpy.typing as npt
 import scenes
 from sim.device import start_device
 from sim.image.camera import compile_camera
-from sim.image.camera_path import make_render_camera
 from sim.image.film import Film, create_film, expose, turns_of
 from sim.image.sight import compose_lights
-from sim.image.survey import Survey, make_measure_footprints, survey_view
+from sim.image.survey import Survey, survey_view
 from sim.launch import load_kernels
 from sim.method import Method
 from sim.photons.energy import EnergyBooks
-from sim.photons.guided_lamps import compile_guided_lamps
-from sim.photons.lamps import Lamps, compile_lamps
+from sim.photons.lamps import Lamps
 from sim.photons.photon_batch import PhotonBatch
-from sim.photons.photon_map import build_photon_map, make_collect, make_reorder
-from sim.photons.photon_path import make_trace_photons
-from sim.photons.pilot import make_retrace_emission
+from sim.photons.photon_map import build_photon_map
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
-from sim.render import gather_radius, radius_shrinkage
+from sim.render import compile_lamps_for, gather_radius, kernels_of, radius_shrinkage
 from sim.scene_data import CompiledScene, compile_scene
 from sim.study.caustic_mesh import Resolution, trace_caustic_mesh
 from sim.study.glass_chain import ChainPhotons, GlassChain, bin_chain, select_chain
@@ -103,14 +99,10 @@ class Workshop:
             features = compile_scene(
                 setup.scene, precision=precision, device=self._device, method=setup.method
             ).features
-            makes = [make_render_camera, make_trace_photons, make_measure_footprints]
+            needed = kernels_of(precision, features)
             if setup.estimator == "gather":
-                makes.append(make_gather_bins)
-            for kernel in [make(precision, features) for make in makes] + [
-                make_collect(precision), make_reorder(precision),
-                make_retrace_emission(precision, setup.method.sampler),
-            ]:
-                kernels[id(kernel)] = kernel
+                needed.append(make_gather_bins(precision, features))
+            kernels.update((id(kernel), kernel) for kernel in needed)
         load_kernels(list(kernels.values()), device=self._device, threads=self.threads)
 
     def radius(self, setup: Setup) -> float:
@@ -119,14 +111,9 @@ class Workshop:
 
     def lamps(self, setup: Setup, seed: int) -> Lamps:
         """The lamps of one run: as a rendering makes them, with a pilot of its own."""
-        bench, settings = self.bench(setup), setup.settings
-        photons, edges = int(settings.photons or 1), np.asarray(setup.scene.film.edges_nm)
-        if settings.direct_light == "photons":
-            return compile_lamps(bench.compiled, edges, photons, view=bench.survey)
-        return compile_guided_lamps(
-            bench.compiled, edges, photons, view=bench.survey, seed=seed,
-            max_interactions=int(settings.max_interactions or 1), threads=self.threads,
-        )
+        bench = self.bench(setup)
+        plan = replace(setup.settings, seed=seed, threads=self.threads)
+        return compile_lamps_for(bench.compiled, bench.survey, plan)
 
     def trace(self, setup: Setup, lamps: Lamps, seed: int, pass_index: int) -> PhotonBatch:
         """One pass of photons."""
