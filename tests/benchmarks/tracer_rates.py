@@ -73,7 +73,7 @@ def sections(compiled: CompiledScene, lamps: Lamps) -> list[FloatArray]:
         columns(polyhedra, data.polyhedron_count, "centre", "first", "count", "prim"),
         columns(
             data.bodies.numpy(), bodies,
-            "material", "medium_outside", "medium_inside", "dispersive",
+            "material", "medium_inside", "dispersive",
         ),
         np.hstack([columns(data.media.numpy(), media, "formula"), data.coefficients.numpy()]),
         shine.cdf.numpy().reshape(-1, 1),
