@@ -46,6 +46,7 @@ def make_retrace_emission(precision: str, sampler: str) -> Any:
     emit = make_emission(precision, sampler)
     densities = make_density_functions(precision)
     target_density, square_of_cone = densities.target_density, densities.square_of_cone
+    way_of = densities.way_of
 
     @wp.func
     def square_of_profile(emitter: emitter_type, origin: vec3):
@@ -88,10 +89,11 @@ def make_retrace_emission(precision: str, sampler: str) -> Any:
                     emitter.first_target + k == target_row,
                 )
                 if target.kind == AIM_CONE:
-                    anchor = ray.origin
                     if emitter.kind == SPHERE_LAMP:
-                        anchor = emitter.centre
-                    s, t = square_of_cone(target, anchor, ray.direction)
+                        way, _factor = way_of(emitter, target, ray.origin, ray.direction)
+                        s, t = square_of_cone(target, emitter.centre, way)
+                    else:
+                        s, t = square_of_cone(target, ray.origin, ray.direction)
             out_density[row, k] = density
             out_square[row, k, 0] = wp.float32(s)
             out_square[row, k, 1] = wp.float32(t)

@@ -84,7 +84,7 @@ def sections(compiled: CompiledScene, lamps: Lamps) -> list[FloatArray]:
         ),
         columns(
             targets, len(targets), "kind", "centre", "frame", "half_u", "half_v", "radius",
-            "first_cdf", "photons",
+            "pivot", "first_cdf", "photons",
         ),
         columns(
             shine.segments.numpy(), len(shine.segments), "wavelength_nm", "width_nm",
