@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Strict, Tag, model_validator
 
 from scenes.columns import refuse_uneven_columns
 from scenes.fields import Number, Wavelength
@@ -18,10 +18,15 @@ _Fraction = Annotated[Number, Field(ge=0, le=1)]
 
 
 class Dielectric(SceneModel):
-    """A transparent medium fills the shape; the scene's ambient medium is outside."""
+    """A transparent medium fills the shape; outside is the ambient one, or another solid's."""
 
     type: Literal["dielectric"] = Field(default="dielectric", description="glass, water, …")
     medium: MediumSpec = Field(description="name of a glass, or a table that describes a medium")
+    priority: Annotated[int, Strict(), Field(ge=-1000, le=1000)] = Field(
+        default=0,
+        description="where solids overlap, the one of the highest priority fills the space,"
+        " -1000 to 1000",
+    )
 
     def resolved(self) -> Medium:
         """The medium inside."""
