@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 
-import numpy as np
+from dataclasses import replace
 
 import scenes
-from spectra import Cauchy, Medium
+from scenes.media import REFERENCE_MEDIA
+from spectra import Medium
 
 __all__ = ["SceneMedia", "collect_media"]
 
@@ -91,10 +92,6 @@ def _ambient_medium(scene: scenes.Scene) -> Medium:
     ambient = scene.resolved_ambient()
     if isinstance(ambient, Medium):
         return ambient
-    return Medium(
-        name=ambient,
-        dispersion=Cauchy((1.0,)),
-        wavelength_range_nm=(0.0, np.inf),
-        source="the index is relative to it",
-        relative_to="vacuum" if ambient == "vacuum" else "air",
-    )
+    if ambient in REFERENCE_MEDIA:
+        return REFERENCE_MEDIA[ambient]
+    return replace(REFERENCE_MEDIA["air"], name=ambient)
