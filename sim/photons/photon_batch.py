@@ -1,6 +1,6 @@
 """The photons that one pass stored, and where its energy went."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -34,6 +34,14 @@ class PhotonBatch:
 
     def __len__(self) -> int:
         return len(self.slots)
+
+    def parted(self) -> tuple["PhotonBatch", "PhotonBatch"]:
+        """Those that no diffuse surface has reflected, and those that one has."""
+        bounced = ((self.data.history.numpy()[self.slots] >> 20) & 1023) > 0
+        return (
+            replace(self, slots=self.slots[~bounced]),
+            replace(self, slots=self.slots[bounced]),
+        )
 
     def to_numpy(self) -> dict[str, npt.NDArray[Any]]:
         """The photons as host arrays, one row a photon.

@@ -26,7 +26,14 @@ from sim.photons.receivers import DEALS, make_receiver_structs
 from sim.precision import precision_types
 from sim.scene_data import CompiledScene
 
-__all__ = ["PhotonMap", "build_photon_map", "make_collect", "make_map_structs", "make_reorder"]
+__all__ = [
+    "INDIRECT_WIDTH",
+    "PhotonMap",
+    "build_photon_map",
+    "make_collect",
+    "make_map_structs",
+    "make_reorder",
+]
 
 _RANGE_SIZE = 65536
 
@@ -37,6 +44,10 @@ looks into; one for all bands costs the photons it passes over: this is between 
 DEAL_BITS = wp.constant(5)
 """Undispersed photons are dealt in packs of 2⁵. Every eighth point of a Sobol sequence lies in one
 eighth of the square; a pack lies all over it, and so do the packs of a deal."""
+
+INDIRECT_WIDTH = 4.0
+"""Gather radius of light that a diffuse surface has reflected, in gather radii of other light: it
+changes less from place to place, and over so much wider a disc has a sixteenth of the noise."""
 
 _MAX_CELLS_A_SIDE = 1024
 _MAX_CELLS = 1 << 23
