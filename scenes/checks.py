@@ -13,6 +13,7 @@ from scenes.film import Film
 from scenes.materials import Dielectric, Metal
 from scenes.media import AMBIENT_NAMES, AmbientSpec, DescribedMedium, resolve_medium
 from scenes.objects import SceneObject
+from scenes.overlap import overlap_problems
 from spectra import Medium, WavelengthOutOfRange, air_index
 
 __all__ = ["cross_problems", "cross_problems_of_valid_parts", "used_ranges_nm"]
@@ -60,6 +61,7 @@ def cross_problems(
         *_repeated_names("objects", {i: one.name for i, one in objects.items()}),
         *_repeated_names("emitters", {i: one.name for i, one in emitters.items()}),
         *_range_problems(used_ranges_nm(film, list(emitters.values())), ambient, objects),
+        *overlap_problems(objects),
     ]
 
 

@@ -1,53 +1,40 @@
 """Materials: what a surface does to the light that meets it."""
 
 from dataclasses import replace
-from typing import Annotated, Final, Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
+from pydantic import Field, Strict, model_validator
 
-from scenes.absorption import AbsorptionSpec
+from scenes.absorption import PUBLISHED, AbsorptionChoice
 from scenes.errors import Problem, refusal
 from scenes.media import DescribedMedium, MediumSpec, coloured, resolve_medium
 from scenes.metals import MetalSpec, resolve_metal
-from scenes.model import SceneModel, plain_or_table
-from scenes.reflectance import Reflectance, reflectance_at
+from scenes.model import SceneModel
+from scenes.reflectance import Reflectance, ReflectanceTable, reflectance_at
 from spectra import Conductor, Medium, absorbing_media, published_absorption
 
-__all__ = ["Absorber", "Dielectric", "Lambertian", "Material", "Metal", "Mirror"]
-
-
-_PUBLISHED: Final = "published"
-
-
-def _known_word(word: str) -> str:
-    if word != _PUBLISHED:
-        allowed = f"{_PUBLISHED!r}, or a table that describes the absorption"
-        raise refusal(Problem("", f"must be {allowed}, is {word!r}", word, allowed))
-    return word
-
-
-_Absorption = Annotated[
-    Annotated[str, AfterValidator(_known_word), Tag("<plain>")]
-    | Annotated[AbsorptionSpec, Tag("<table>")],
-    Discriminator(plain_or_table),
-]
-"""The word for what is known of a glass, or a description."""
+__all__ = ["Absorber", "Dielectric", "Lambertian", "Material", "Metal", "Mirror", "is_specular"]
 
 
 class Dielectric(SceneModel):
-    """A transparent medium fills the shape; the scene's ambient medium is outside."""
+    """A transparent medium fills the shape; outside is the ambient one, or another solid's."""
 
     type: Literal["dielectric"] = Field(default="dielectric", description="glass, water, …")
     medium: MediumSpec = Field(
         description='name of a glass, "air" or "vacuum" (a bubble), or a table that describes a'
         " medium"
     )
-    absorption: _Absorption | None = Field(
+    absorption: AbsorptionChoice | None = Field(
         default=None,
         description='what the medium takes of the light on its way: "published" takes what is known'
         " of a glass by name, a table describes it; nothing if absent",
+    )
+    priority: Annotated[int, Strict(), Field(ge=-1000, le=1000)] = Field(
+        default=0,
+        description="where solids overlap, the one of the highest priority fills the space,"
+        " -1000 to 1000",
     )
 
     @model_validator(mode="after")
@@ -61,8 +48,8 @@ class Dielectric(SceneModel):
 
     @model_validator(mode="after")
     def _is_published(self) -> Self:
-        if self.absorption == _PUBLISHED and self.medium not in absorbing_media():
-            allowed = f"{_PUBLISHED!r} for {', '.join(absorbing_media())}; else a table"
+        if self.absorption == PUBLISHED and self.medium not in absorbing_media():
+            allowed = f"{PUBLISHED!r} for {', '.join(absorbing_media())}; else a table"
             named = self.medium if isinstance(self.medium, str) else "a medium of the scene's own"
             message = f"nothing is published of {named}; allowed: {allowed}"
             raise refusal(Problem("absorption", message, self.absorption, allowed))
@@ -102,6 +89,12 @@ class Mirror(SceneModel):
         """Reflectance at wavelengths [nm], of the same shape, 0 to 1."""
         return reflectance_at(self.reflectance, wavelength_nm)
 
+    @property
+    def is_coloured(self) -> bool:
+        """Whether what it reflects depends on the wavelength."""
+        table = self.reflectance
+        return isinstance(table, ReflectanceTable) and len(set(table.values)) > 1
+
 
 class Metal(SceneModel):
     """The polished surface of a metal: reflects as Fresnel says of its complex index."""
@@ -110,6 +103,11 @@ class Metal(SceneModel):
     metal: MetalSpec = Field(
         description="gold, silver, aluminium, copper, or a table of the complex index"
     )
+
+    @property
+    def is_coloured(self) -> bool:
+        """Whether what it reflects depends on the wavelength; all metals count as coloured."""
+        return True
 
     def resolved(self) -> Conductor:
         """The metal."""
@@ -120,6 +118,11 @@ class Absorber(SceneModel):
     """Swallows all light."""
 
     type: Literal["absorber"] = Field(default="absorber", description="black")
+
+
+def is_specular(material: object) -> bool:
+    """Whether a surface sends light on in single directions, by refraction or reflection."""
+    return isinstance(material, Dielectric | Mirror | Metal)
 
 
 Material = Annotated[
