@@ -22,6 +22,7 @@ __all__ = [
     "InternalTransmittance",
     "NapierianAbsorption",
     "TransmittanceTable",
+    "describe_absorption",
 ]
 
 _SOURCE = "described in the scene"
@@ -117,6 +118,17 @@ class NapierianAbsorption(DescribedAbsorption):
             table = self.coefficient
             return Absorption(table.values, table.wavelength_nm, _SOURCE)
         return Absorption((self.coefficient,), source=_SOURCE)
+
+
+def describe_absorption(absorption: Absorption) -> NapierianAbsorption:
+    """The absorption as a scene describes it, to the last digit."""
+    if absorption.wavelength_nm:
+        return NapierianAbsorption(
+            coefficient=CoefficientTable(
+                wavelength_nm=absorption.wavelength_nm, values=absorption.napierian_per_m
+            )
+        )
+    return NapierianAbsorption(coefficient=absorption.napierian_per_m[0])
 
 
 class DecadicAbsorption(DescribedAbsorption):
