@@ -42,7 +42,8 @@ def make_lights_struct(precision: str) -> Any:
     """Struct Lights: the photon maps, how receivers reflect, and the lamps.
 
     `photons` are those that lamps, glass and mirrors have sent, `bounced` those that a diffuse
-    surface has; `interreflection` is 1 where there may be any. `direct` is 1 where the map leaves out what comes straight from the lamps.
+    surface has; `interreflection` is 1 where there may be any. `direct` is 1 where the maps leave
+    out what comes straight from the lamps.
     """
     map_type = make_map_structs(precision).Map
     receivers_type = make_receiver_structs(precision).Receivers
