@@ -38,6 +38,7 @@ from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
 from sim.photons.photon_batch import PhotonBatch
 from sim.photons.photon_map import (
+    INDIRECT_KEPT,
     INDIRECT_WIDTH,
     PhotonMap,
     build_photon_map,
@@ -49,12 +50,16 @@ from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
+from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
 
 __all__ = ["compile_lamps_for", "gather_radius", "kernels_of", "radius_shrinkage", "render"]
+
+_THINNING_KEY = 0x7411
+"""Apart from every stream's number."""
 
 FOOTPRINTS_A_RADIUS = 2.0
 """The first pass gathers over a disc this many pixel widths in radius."""
@@ -227,7 +232,8 @@ class _Studio:
         with self.watch.timing("build photon map"):
             if not self.compiled.features.interreflection:
                 return _Maps(self._sorted(batch, radius, stop), None), batch.books
-            straight, bounced = batch.parted()
+            first = fold_key(self.plan.seed, pass_index, _THINNING_KEY) % INDIRECT_KEPT
+            straight, bounced = batch.parted(every=INDIRECT_KEPT, first=first)
             maps = _Maps(
                 self._sorted(straight, radius, stop),
                 self._sorted(bounced, INDIRECT_WIDTH * radius, stop),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenes import Dielectric, Lambertian, Metal, Mirror
+from scenes import Dielectric, Disk, Lambertian, Metal, Mirror, Plane, Rectangle
 from sim.features.boundary_error import path_error, relative_variations
 from sim.features.registry import (
     Cost,
@@ -60,22 +60,28 @@ register(Feature(
 ))  # fmt: skip
 
 
+def _what_colours(subject: Subject) -> str:
+    """What parts light by its wavelength, apart from refraction; "" if nothing does."""
+    coloured = sum(one.is_coloured for one in subject.finishes)
+    if coloured:
+        return f"{coloured} mirrors or metals reflect some wavelengths more than others"
+    if subject.bounces != 0 and any(
+        isinstance(one.material, Lambertian) and one.material.is_coloured
+        for one in subject.scene.objects
+    ):
+        return "diffuse surfaces reflect some wavelengths more than others"
+    tinted = [medium.name for medium in subject.media if is_tinted(medium)]
+    return "absorption depends on the wavelength: " + ", ".join(tinted) if tinted else ""
+
+
 def _judge_dispersion(subject: Subject) -> Verdict | None:
     """Left out where no index varies; where it hardly does, as far as the bound allows.
 
     The bound is that of treating every wavelength as any other one of the film's.
     """
-    coloured = sum(one.is_coloured for one in subject.finishes)
-    if coloured:
-        return needed(f"{coloured} mirrors or metals reflect some wavelengths more than others")
-    if subject.bounces != 0 and any(
-        isinstance(one.material, Lambertian) and one.material.is_coloured
-        for one in subject.scene.objects
-    ):
-        return needed("diffuse surfaces reflect some wavelengths more than others")
-    tinted = [medium.name for medium in subject.media if is_tinted(medium)]
-    if tinted:
-        return needed("absorption depends on the wavelength: " + ", ".join(tinted))
+    colours = _what_colours(subject)
+    if colours:
+        return needed(colours)
     if not subject.has_boundaries:
         return null("there is no boundary")
     if not any(subject.varying_media):
@@ -135,8 +141,10 @@ def _judge_interreflection(subject: Subject) -> Verdict:
     largest = max(
         (float(np.max(one.reflectance_at(wavelength_nm))) for one in diffuse), default=0.0
     )
-    if largest == 0.0 or len(subject.scene.objects) < 2:
-        return null("no diffuse surface can light another")
+    shapes = [one.shape for one in subject.scene.objects]
+    alone = len(shapes) == 1 and isinstance(shapes[0], Rectangle | Disk | Plane)
+    if largest == 0.0 or alone:
+        return null("no diffuse surface can light another, or itself")
     if subject.bounces == 0:
         return Verdict("bounces = 0: diffuse surfaces do not light one another", 1.0, chosen=True)
     return needed(f"{len(diffuse)} diffuse surfaces, reflectance up to {largest:.2g}")
