@@ -30,10 +30,15 @@ def _size(scene: scenes.Scene) -> float:
     return 2.0 * max(float(np.linalg.norm(centre - middle)) + radius for centre, radius in spheres)
 
 
+def near_pairs(scene: scenes.Scene) -> list[tuple[int, int]]:
+    """Pairs of objects, one of them made of a medium, that may touch, nest or overlap."""
+    near = find_neighbours(scene, _NEAR * _size(scene))
+    return [(i, j) for i, row in enumerate(near) for j in row if i < j]
+
+
 def _judge_interfaces(subject: Subject) -> Verdict:
     names = [item.name for item in subject.scene.objects]
-    near = find_neighbours(subject.scene, _NEAR * _size(subject.scene))
-    pairs = [f"{names[i]} and {names[j]}" for i, row in enumerate(near) for j in row if i < j]
+    pairs = [f"{names[i]} and {names[j]}" for i, j in near_pairs(subject.scene)]
     if not pairs:
         return null("no solid is near another object")
     more = f", and {len(pairs) - 1} pairs more" if len(pairs) > 1 else ""
@@ -50,7 +55,13 @@ register(Feature(
 
 
 def _judge_absorption(subject: Subject) -> Verdict:
-    """What is lost on a way as long as light can be inside: α L, L = `BOUNDARIES` diameters."""
+    """What is lost on a way as long as light can be inside: α L, L = `BOUNDARIES` diameters.
+
+    In the ambient medium ways know no bounds.
+    """
+    ambient = subject.media[0]
+    if ambient.absorption is not None and not ambient.absorption.is_transparent:
+        return needed(f"{ambient.name}, all around, absorbs")
     edges_nm = subject.scene.film.edges_nm
     wavelength_nm = np.linspace(edges_nm[0], edges_nm[-1], _SAMPLES)
     strongest, name = 0.0, ""
