@@ -3,9 +3,9 @@
 import numpy as np
 
 import scenes
-from scenes.shapes.reach import may_meet
+from scenes.shapes.reach import close_pairs, may_meet
 
-__all__ = ["find_neighbours", "touch_distance"]
+__all__ = ["find_neighbours", "rank_media", "touch_distance"]
 
 _TOUCH_BITS = {"float64": 40, "float32": 17}
 """Surfaces nearer to one another than 2^−this of the scene's size are in one place. That is some
@@ -25,20 +25,26 @@ def find_neighbours(scene: scenes.Scene, slack: float) -> list[list[int]]:
     """
     near: list[list[int]] = [[] for _ in scene.objects]
     filled = [isinstance(one.material, scenes.Dielectric) for one in scene.objects]
-    spheres = [
-        None if isinstance(one.shape, scenes.Plane) else one.shape.bounding_sphere()
-        for one in scene.objects
-    ]
-    for i, one in enumerate(scene.objects):
-        for j in range(i + 1, len(scene.objects)):
-            if not (filled[i] or filled[j]):
-                continue
-            here, there = spheres[i], spheres[j]
-            if here is not None and there is not None:
-                apart = float(np.linalg.norm(np.subtract(here[0], there[0])))
-                if apart - here[1] - there[1] > slack:
-                    continue
-            if may_meet(one.shape, scene.objects[j].shape, slack):
-                near[i].append(j)
-                near[j].append(i)
+    shapes = [one.shape for one in scene.objects]
+    for i, j in close_pairs(shapes, slack):
+        if (filled[i] or filled[j]) and may_meet(shapes[i], shapes[j], slack):
+            near[i].append(j)
+            near[j].append(i)
     return near
+
+
+def rank_media(scene: scenes.Scene) -> list[int]:
+    """Of each object, its place among those made of a medium, from 0: by priority, then by order.
+
+    No two have the same, so that solids of one priority that overlap by a hair, as rounding makes
+    them, are dealt with like any others: of equal priorities the first in the scene ranks highest.
+    """
+    priorities = [
+        (one.material.priority, -prim)
+        for prim, one in enumerate(scene.objects)
+        if isinstance(one.material, scenes.Dielectric)
+    ]
+    ranks = [0] * len(scene.objects)
+    for rank, (_, minus_prim) in enumerate(sorted(priorities)):
+        ranks[-minus_prim] = rank
+    return ranks
