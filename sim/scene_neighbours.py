@@ -5,11 +5,33 @@ import numpy as np
 import scenes
 from scenes.shapes.reach import close_pairs, may_meet
 
-__all__ = ["find_neighbours", "rank_media", "touch_distance"]
+__all__ = ["find_neighbours", "near_pairs", "rank_media", "scene_size", "touch_distance"]
 
 _TOUCH_BITS = {"float64": 40, "float32": 17}
 """Surfaces nearer to one another than 2^−this of the scene's size are in one place. That is some
 hundred times the rounding of coordinates, and nothing that a bench could tell from contact."""
+
+_NEAR = 1e-4
+"""Solids within this part of the scene's size of each other may touch, whatever the precision."""
+
+
+def scene_size(scene: scenes.Scene) -> float:
+    """Diameter of a sphere around the finite objects, at most twice too large [m]."""
+    spheres = [
+        item.shape.bounding_sphere()
+        for item in scene.objects
+        if not isinstance(item.shape, scenes.Plane)
+    ]
+    if not spheres:
+        return 1.0
+    middle = np.mean([centre for centre, _ in spheres], axis=0)
+    return 2.0 * max(float(np.linalg.norm(centre - middle)) + radius for centre, radius in spheres)
+
+
+def near_pairs(scene: scenes.Scene) -> list[tuple[int, int]]:
+    """Pairs of objects, one of them made of a medium, that may touch, nest or overlap."""
+    near = find_neighbours(scene, _NEAR * scene_size(scene))
+    return [(i, j) for i, row in enumerate(near) for j in row if i < j]
 
 
 def touch_distance(bounding_radius: float, precision: str) -> float:

@@ -4,41 +4,18 @@ import math
 
 import numpy as np
 
-import scenes
 from sim.features.boundary_error import BOUNDARIES
 from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
-from sim.scene_neighbours import find_neighbours
+from sim.scene_neighbours import scene_size
 
 __all__: list[str] = []
-
-_NEAR = 1e-4
-"""Solids within this part of the scene's size of each other may touch, whatever the precision."""
 
 _SAMPLES = 257
 
 
-def _size(scene: scenes.Scene) -> float:
-    """Diameter of a sphere around the finite objects, at most twice too large [m]."""
-    spheres = [
-        item.shape.bounding_sphere()
-        for item in scene.objects
-        if not isinstance(item.shape, scenes.Plane)
-    ]
-    if not spheres:
-        return 1.0
-    middle = np.mean([centre for centre, _ in spheres], axis=0)
-    return 2.0 * max(float(np.linalg.norm(centre - middle)) + radius for centre, radius in spheres)
-
-
-def near_pairs(scene: scenes.Scene) -> list[tuple[int, int]]:
-    """Pairs of objects, one of them made of a medium, that may touch, nest or overlap."""
-    near = find_neighbours(scene, _NEAR * _size(scene))
-    return [(i, j) for i, row in enumerate(near) for j in row if i < j]
-
-
 def _judge_interfaces(subject: Subject) -> Verdict:
     names = [item.name for item in subject.scene.objects]
-    pairs = [f"{names[i]} and {names[j]}" for i, j in near_pairs(subject.scene)]
+    pairs = [f"{names[i]} and {names[j]}" for i, j in subject.near_pairs]
     if not pairs:
         return null("no solid is near another object")
     more = f", and {len(pairs) - 1} pairs more" if len(pairs) > 1 else ""
@@ -77,7 +54,7 @@ def _judge_absorption(subject: Subject) -> Verdict:
             strongest, name = float(alpha), medium.name
     if strongest == 0.0:
         return null("no medium absorbs")
-    bound = -math.expm1(-strongest * BOUNDARIES * _size(subject.scene))
+    bound = -math.expm1(-strongest * BOUNDARIES * scene_size(subject.scene))
     return Verdict(f"{name} absorbs up to {strongest:.3g} per metre", bound)
 
 
