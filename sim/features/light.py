@@ -97,7 +97,8 @@ def _judge_undispersed(subject: Subject) -> Verdict:
     ambient = subject.varying_media[0]
     for item in subject.scene.objects:
         if isinstance(item.material, Dielectric):
-            if not (ambient or varies.get(item.material.resolved(), False)):
+            medium = item.material.resolved()
+            if medium == subject.media[0] or not (ambient or varies.get(medium, False)):
                 return needed(f"light keeps its colours together in {item.name}")
         elif isinstance(item.material, Mirror | Metal) and not item.material.is_coloured:
             return needed(f"light keeps its colours together on {item.name}")
