@@ -1,4 +1,4 @@
-"""Solids that touch, nest and overlap: doublets, immersion, bubbles, tumblers, and what is flush."""
+"""Solids that touch, nest and overlap: doublets, immersion, bubbles, tumblers, flush blocks."""
 
 import math
 
@@ -180,7 +180,7 @@ def test_a_lens_in_a_tank_is_a_lens_under_water(thick_lens):
 
 def test_apparent_depth():
     # A mirror flush on the bottom of a tank of depth d is seen at d/n (Hecht 2017, §5.2.2, for
-    # rays near the vertical): light from a height h above the water comes back from h + 2 d/n below.
+    # rays near the vertical): light from a height h comes back from h + 2 d/n below the water.
     depth, height, slope = 0.3, 0.5, 1e-4
     tank = block("tank", (-1, -depth, -1), (1, 0, 1), constant(WATER))
     floor = scenes.Rectangle(position=(0.0, -depth, 0.0), size=(3.0, 3.0))
