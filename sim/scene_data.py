@@ -15,6 +15,7 @@ import warp as wp
 import scenes
 from scenes.frames import frame_about
 from sim.features import Features, Subject, find_features
+from sim.mesh_data import compile_meshes
 from sim.method import Method
 from sim.optics.dispersion import DISPERSION_COEFFICIENTS
 from sim.precision import precision_types
@@ -27,6 +28,7 @@ from sim.scene_structs import (
     SELLMEIER,
     SHAPE_FLAT,
     SHAPE_LENS,
+    SHAPE_MESH,
     SHAPE_POLYHEDRON,
     SHAPE_SPHERE,
     TABULATED,
@@ -164,6 +166,7 @@ def _fill_shapes(
     rows: dict[str, list[Row]] = {
         name: [] for name in ("spheres", "flats", "polyhedra", "planes", "lenses")
     }
+    meshes: list[tuple[scenes.Triangulated, FloatArray, int]] = []
     places: list[tuple[int, int]] = []
     for prim, item in enumerate(scene.objects):
         shape = item.shape
@@ -177,6 +180,9 @@ def _fill_shapes(
         elif isinstance(shape, scenes.Rectangle | scenes.Disk | scenes.Plane):
             places.append((int(SHAPE_FLAT), len(rows["flats"])))
             rows["flats"].append(_flat_row(shape, centre, prim))
+        elif isinstance(shape, scenes.Triangulated):
+            places.append((int(SHAPE_MESH), len(meshes)))
+            meshes.append((shape, centre, prim))
         else:
             places.append((int(SHAPE_POLYHEDRON), len(rows["polyhedra"])))
             normals, offsets = shape.faces()
@@ -188,6 +194,7 @@ def _fill_shapes(
     data.polyhedra = struct_array(structs.Polyhedron, rows["polyhedra"], device)
     data.planes = struct_array(structs.Plane, rows["planes"], device)
     data.lenses = struct_array(structs.Lens, rows["lenses"], device)
+    data.meshes = compile_meshes(meshes, precision=precision, device=device)
     data.sphere_count = len(rows["spheres"])
     data.flat_count = len(rows["flats"])
     data.polyhedron_count = len(rows["polyhedra"])

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import warp as wp
 
+from sim.mesh_structs import make_mesh_structs
 from sim.precision import precision_types
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "SELLMEIER",
     "SHAPE_FLAT",
     "SHAPE_LENS",
+    "SHAPE_MESH",
     "SHAPE_POLYHEDRON",
     "SHAPE_SPHERE",
     "TABULATED",
@@ -37,6 +39,7 @@ SHAPE_SPHERE = wp.constant(0)
 SHAPE_FLAT = wp.constant(1)
 SHAPE_POLYHEDRON = wp.constant(2)
 SHAPE_LENS = wp.constant(3)
+SHAPE_MESH = wp.constant(4)
 
 
 @functools.cache
@@ -156,6 +159,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
     shapes, rays = make_shape_structs(precision), make_ray_structs(precision)
     sphere, flat, plane = shapes.Sphere, shapes.Flat, shapes.Plane
     polyhedron, lens = shapes.Polyhedron, shapes.Lens
+    meshes_type = make_mesh_structs(precision).Meshes
 
     @wp.struct
     class Body:
@@ -182,6 +186,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         polyhedra: wp.array(dtype=polyhedron)
         planes: wp.array(dtype=plane)
         lenses: wp.array(dtype=lens)
+        meshes: meshes_type
         bodies: wp.array(dtype=Body)
         media: wp.array(dtype=Medium)
         coefficients: wp.array2d(dtype=real)

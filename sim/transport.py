@@ -19,6 +19,7 @@ import warp as wp
 from sim.features import Features
 from sim.geometry.flat import intersect_plane, plane_coordinates
 from sim.geometry.lens import intersect_lens, lens_normal
+from sim.geometry.mesh import facet_normal, intersect_mesh, mesh_normal
 from sim.geometry.polyhedron import intersect_polyhedron
 from sim.geometry.sphere import intersect_sphere
 from sim.optics.dielectric import (
@@ -35,6 +36,7 @@ from sim.scene_structs import (
     DIELECTRIC,
     LAMBERTIAN,
     SELLMEIER,
+    SHAPE_MESH,
     TABULATED,
     make_scene_structs,
 )
@@ -171,6 +173,25 @@ def make_intersect(precision: str, features: Features):
                     normal = lens_normal(lens, face, origin + direction * t)
                     hit.normal = wp.normalize(wp.transpose(lens.frame) * normal)
                 i += 1
+        if wp.static(features.meshes):
+            i = int(0)
+            while i < scene.meshes.count:
+                mesh = scene.meshes.rows[i]
+                leaving_face = -1
+                if ray.prim == mesh.prim:
+                    leaving_face = ray.face
+                local = ray.origin - mesh.centre
+                t, face = intersect_mesh(
+                    scene.meshes, mesh, local, ray.direction, leaving_face, hit.t
+                )
+                if t >= real(0.0) and t < hit.t:
+                    hit.t = t
+                    hit.prim = mesh.prim
+                    hit.face = face
+                    hit.normal = mesh_normal(
+                        scene.meshes, mesh, face, local + ray.direction * t, ray.direction
+                    )
+                i += 1
         return hit
 
     return intersect
@@ -246,6 +267,20 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                     total, reflectance, reflected, refracted = cross_boundary(
                         ray.direction, normal, eta
                     )
+                    if wp.static(features.meshes):
+                        if body.shape == SHAPE_MESH:
+                            # Near grazing a smooth normal can send light through the facet that
+                            # should reflect it, or back that should pass: then the facet's rules.
+                            facet = facet_normal(scene.meshes, hit.face)
+                            if met.side == 1:
+                                facet = -facet
+                            if wp.dot(reflected, facet) <= real(0.0) or (
+                                total == 0 and wp.dot(refracted, facet) >= real(0.0)
+                            ):
+                                met.normal = facet
+                                total, reflectance, reflected, refracted = cross_boundary(
+                                    ray.direction, facet, eta
+                                )
                     met.eta = eta
                     met.total = total
                     met.reflectance = reflectance
