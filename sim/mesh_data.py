@@ -7,16 +7,15 @@ import numpy.typing as npt
 import warp as wp
 
 from scenes import Triangulated
+from sim.device_arrays import struct_array
 from sim.mesh_structs import make_mesh_structs
 from sim.mesh_tree import build_tree
+from sim.photons.photon_structs import MAX_PARTS
 from sim.precision import precision_types
 
 __all__ = ["compile_meshes"]
 
 FloatArray = npt.NDArray[np.float64]
-
-MAX_PATCHES = 1 << 13
-"""Smooth parts that a photon's surface key can tell apart; more than that share numbers."""
 
 _SLACK_ULPS = 64.0
 _EDGE_ULPS = 8.0
@@ -50,7 +49,9 @@ def compile_meshes(
         corners = surface.corners[tree.order]
         corners[is_filler] = corners[is_filler][:, :1]  # a point, which no ray meets
         block["a"], block["b"], block["c"] = np.moveaxis(corners, 1, 0)
-        block["patch"] = surface.patches[tree.order] % MAX_PATCHES
+        block["patch"] = surface.patches[tree.order] % MAX_PARTS  # more than that share numbers
+        _, first, rows_of = np.unique(tree.order, return_index=True, return_inverse=True)
+        block["face"] = triangles.count + first[rows_of]
         is_smooth = surface.corner_normals is not None
         rows.append((
             centre, nodes.count, tree.inner_nodes, triangles.count, tree.leaf_size,
@@ -62,7 +63,7 @@ def compile_meshes(
         if surface.corner_normals is not None:
             normals.add(surface.corner_normals[tree.order].reshape(-1, 3).astype(types.dtype))
     data = structs.Meshes()
-    data.rows = _device_array(structs.Mesh, _records(structs.Mesh, rows), device)
+    data.rows = struct_array(structs.Mesh, rows, device)
     data.nodes = _device_array(structs.Box, nodes.joined(), device)
     data.triangles = _device_array(structs.Triangle, triangles.joined(), device)
     data.corner_normals = _device_array(types.vec3, normals.joined(), device)
@@ -88,15 +89,8 @@ class _Blocks:
         return np.concatenate(self._blocks, out=whole)  # which keeps the gaps between its fields
 
 
-def _records(struct: Any, rows: list[Any]) -> npt.NDArray[Any] | None:
-    host = np.zeros(len(rows), dtype=struct.numpy_dtype())
-    for i, row in enumerate(rows):
-        host[i] = row
-    return host if rows else None
-
-
 def _device_array(dtype: Any, host: npt.NDArray[Any] | None, device: str) -> Any:
-    """A device array; of one element that no count mentions if there is none (see `scene_data`)."""
+    """A device array; never of length zero: see `struct_array`."""
     if host is None:
         return wp.zeros(1, dtype=dtype, device=device)
     return wp.array(host, dtype=dtype, device=device)

@@ -14,6 +14,9 @@ __all__ = ["make_mesh_structs"]
 def make_mesh_structs(precision: str) -> SimpleNamespace:
     """Structs of one precision: Box, Triangle, Mesh, and Meshes, which holds the arrays of all.
 
+    Triangle: its corners; the `patch` that it is of, see `scenes.shapes.surface`; and, since a
+    large triangle has several rows, the first of them, its `face`.
+
     Mesh: `centre`, which its coordinates are relative to; its tree, with `inner_nodes` nodes above
     its leaves, and `leaf_size` triangles in each of those, in the leaves' order; `first_normal`,
     the row of its first corner's normal, or −1 for facets; `closed`, 1 if it encloses a volume;
@@ -32,7 +35,8 @@ def make_mesh_structs(precision: str) -> SimpleNamespace:
         a: vec3
         b: vec3
         c: vec3
-        patch: int  # smooth part of the surface
+        patch: int
+        face: int
 
     @wp.struct
     class Mesh:

@@ -82,7 +82,7 @@ def grid_surface(grid: HeightGrid, size: tuple[float, float], depth: float | Non
     smooth = _normals(grid, x, z)[triangles]
     if depth is None:
         return Surface(top, triangles, smooth)
-    vertices, rest = _walls(top, numbers, depth)
+    vertices, rest = _walls(top, numbers, triangles, depth)
     closed = Surface(vertices, np.concatenate([triangles, rest]))
     flat = np.repeat(closed.facet_normals[len(triangles) :, None, :], 3, axis=1)
     return Surface(vertices, closed.triangles, np.concatenate([smooth, flat]))
@@ -106,16 +106,18 @@ def _slope(heights: FloatArray, places: FloatArray) -> FloatArray:
     return np.gradient(heights, spacing, axis=0, edge_order=2)
 
 
-def _walls(top: FloatArray, numbers: IntArray, depth: float) -> tuple[FloatArray, IntArray]:
-    """All the vertices, and the triangles of sides and bottom; the bottom's fan has a middle."""
+def _walls(
+    top: FloatArray, numbers: IntArray, triangles: IntArray, depth: float
+) -> tuple[FloatArray, IntArray]:
+    """All the vertices, and the triangles of the sides and of a bottom cut up as the top is.
+
+    A bottom of few triangles would be of long ones, which a tree of boxes finds hard to part.
+    """
     around = np.concatenate(  # from corner to corner, as a right hand turns about -y
         [numbers[0, :-1], numbers[:-1, -1], numbers[-1, :0:-1], numbers[:0:-1, 0]]
     )
-    low = top[around] * [1.0, 0.0, 1.0] - [0.0, depth, 0.0]
-    vertices = np.concatenate([top, low, [[0.0, -depth, 0.0]]])
-    below = len(top) + np.arange(len(around))
-    ahead, below_ahead = np.roll(around, -1), np.roll(below, -1)
-    middle = np.full_like(below, len(vertices) - 1)
-    sides = [around, ahead, below_ahead], [around, below_ahead, below]
-    bottom = middle, below, below_ahead
-    return vertices, np.concatenate([np.stack(face, axis=1) for face in (*sides, bottom)])
+    bottom = top * [1.0, 0.0, 1.0] - [0.0, depth, 0.0]
+    ahead, count = np.roll(around, -1), len(top)
+    sides = [around, ahead, ahead + count], [around, ahead + count, around + count]
+    walls = [np.stack(side, axis=1) for side in sides]
+    return np.concatenate([top, bottom]), np.concatenate([*walls, triangles[:, ::-1] + count])

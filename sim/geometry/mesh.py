@@ -11,14 +11,13 @@ inside next, and outward from outside: on edges and corners too.
 References:
     Woop, Benthin & Wald (2013), "Watertight ray/triangle intersection", JCGT 2(1): the triangle
     sheared into the ray's frame.
-    Ericson (2005), *Real-Time Collision Detection*, §5.1.5: the nearest point of a triangle.
 """
 
 from typing import Any
 
 import warp as wp
 
-__all__ = ["facet_normal", "intersect_mesh", "locate_in_mesh", "mesh_normal"]
+__all__ = ["area_vector", "facet_normal", "intersect_mesh", "mesh_normal"]
 
 @wp.func
 def area_vector(triangle: Any):
@@ -163,7 +162,7 @@ def intersect_mesh(
             stop = row + mesh.leaf_size
             while row < stop:
                 triangle = meshes.triangles[row]
-                if row != leaving_face and meets_triangle(
+                if triangle.face != leaving_face and meets_triangle(
                     triangle, origin, across, up, mesh.rounding
                 ):
                     normal = area_vector(triangle)
@@ -172,7 +171,7 @@ def intersect_mesh(
                         t = wp.dot(triangle.a - origin, normal) / approach
                         if t >= t_low and t < nearest:
                             nearest = t
-                            face = row
+                            face = triangle.face
                 row += 1
         node = -1
         if depth > 0:
@@ -211,91 +210,3 @@ def mesh_normal(meshes: Any, mesh: Any, face: int, point: Any, direction: Any):
     if wp.dot(direction, smooth) * wp.dot(direction, flat) > zero:
         return wp.normalize(smooth)
     return flat
-
-
-@wp.func
-def nearest_on_triangle(point: Any, triangle: Any):
-    """Vector from `point` to the nearest point of a triangle."""
-    zero = type(point[0])(0.0)
-    one = type(point[0])(1.0)
-    ab = triangle.b - triangle.a
-    ac = triangle.c - triangle.a
-    a = triangle.a - point
-    normal = wp.cross(ab, ac)
-    area2 = wp.dot(normal, normal)
-    b = triangle.b - point
-    c = triangle.c - point
-    if area2 > zero:
-        foot = normal * (wp.dot(a, normal) / area2)
-        inside = wp.dot(wp.cross(b - foot, c - foot), normal) >= zero
-        inside = inside and wp.dot(wp.cross(c - foot, a - foot), normal) >= zero
-        if inside and wp.dot(wp.cross(a - foot, b - foot), normal) >= zero:
-            return foot
-    best = a
-    for side in range(3):
-        start = wp.where(side == 0, a, wp.where(side == 1, b, c))
-        end = wp.where(side == 0, b, wp.where(side == 1, c, a))
-        along = end - start
-        length2 = wp.dot(along, along)
-        s = zero
-        if length2 > zero:
-            s = wp.clamp(-wp.dot(start, along) / length2, zero, one)
-        candidate = start + along * s
-        if wp.dot(candidate, candidate) < wp.dot(best, best):
-            best = candidate
-    return best
-
-
-@wp.func
-def locate_in_mesh(meshes: Any, mesh: Any, point: Any, tolerance: Any):
-    """Where a point is: −1 inside a closed mesh, 0 on its surface, 1 outside; and the triangle.
-
-    Args:
-        meshes: struct with the arrays of all meshes.
-        mesh: struct of this one.
-        point: relative to the mesh's centre.
-        tolerance: distance up to which a point is on the surface [m].
-
-    Returns:
-        −1, 0 or 1, and on the surface the nearest triangle, whose normal `facet_normal` has.
-    """
-    zero = type(tolerance)(0.0)
-    best = tolerance * tolerance
-    face = int(-1)
-    stack = wp.zeros(shape=(32,), dtype=int)
-    depth = int(0)
-    node = int(0)
-    while node >= 0:
-        box = meshes.nodes[mesh.first_node + node]
-        gap = wp.max(wp.max(box.low - point, point - box.high), type(point)())
-        if wp.dot(gap, gap) <= best:
-            if node < mesh.inner_nodes:
-                stack[depth] = node + node + 2
-                depth += 1
-                node = node + node + 1
-                continue
-            row = int(mesh.first_triangle + (node - mesh.inner_nodes) * mesh.leaf_size)
-            stop = row + mesh.leaf_size
-            while row < stop:
-                offset = nearest_on_triangle(point, meshes.triangles[row])
-                distance2 = wp.dot(offset, offset)
-                if distance2 <= best:
-                    best = distance2
-                    face = row
-                row += 1
-        node = -1
-        if depth > 0:
-            depth -= 1
-            node = stack[depth]
-    if face >= 0:
-        return 0, face
-    # Any ray tells; this one is parallel to nothing that people build.
-    direction = wp.normalize(
-        type(point)(
-            type(tolerance)(0.5773), type(tolerance)(0.4142), type(tolerance)(0.7236)
-        )
-    )
-    t, face = intersect_mesh(meshes, mesh, point, direction, -1, type(tolerance)(wp.inf))
-    if t >= zero and wp.dot(direction, area_vector(meshes.triangles[face])) > zero:
-        return -1, -1
-    return 1, -1
