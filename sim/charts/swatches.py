@@ -62,10 +62,13 @@ def draw_swatches(axes: Axes, colours: Mapping[str, npt.ArrayLike]) -> None:
 
     for column, linear in enumerate(colours.values()):
         for row, (method, codes) in enumerate(shown_colours(linear).items()):
-            axes.add_patch(Rectangle((column, row), 1.0, 1.0, facecolor=hex_code(codes)))
+            colour = hex_code(codes)
+            axes.add_patch(
+                Rectangle((column, row), 1.0, 1.0, facecolor=colour, edgecolor="0.8")
+            )
             bright = luminance(map_to_gamut(linear, method)) > _DARK_TEXT_ABOVE
             axes.annotate(
-                hex_code(codes), (column + 0.5, row + 0.5), ha="center", va="center",
+                colour, (column + 0.5, row + 0.5), ha="center", va="center",
                 color="black" if bright else "white", fontsize="small",
             )  # fmt: skip
     axes.set_xlim(0.0, len(colours))
