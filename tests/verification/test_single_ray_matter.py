@@ -11,7 +11,7 @@ from sim.analytic_conductor import conductor_reflectance
 from sim.device import start_device
 from sim.scene_data import compile_scene
 from sim.single_ray import trace_compiled_rays
-from spectra import conductor, conductors, glass, published_absorption
+from spectra import WavelengthOutOfRange, conductor, conductors, glass, published_absorption
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -126,6 +126,22 @@ def test_a_metal_under_glass_has_the_glasss_index_in_front():
     metal = conductor("gold")
     expected = conductor_reflectance(math.cos(0.6), 1.5, metal.eta(450.0), metal.k(450.0))
     assert 1.0 - path.absorptances[0] == pytest.approx(0.5 * sum(expected), abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("scene", "wavelength_nm", "message"),
+    [
+        (
+            slab(scenes.Dielectric(medium="F2", absorption="published")),
+            330.0,
+            "F2 has no absorption coefficient at 330 nm; allowed: 334 to 2500 nm",
+        ),
+        (disk(scenes.Metal(metal="aluminium")), 200.0, "aluminium has no refractive index at 200"),
+    ],
+)
+def test_wavelengths_at_which_matter_is_not_known(scene, wavelength_nm, message):
+    with pytest.raises(WavelengthOutOfRange, match=message):
+        trace_ray(scene, (0.0, 0.1, 0.0), (0.0, -1.0, 0.0), wavelength_nm)
 
 
 def test_an_ideal_mirror_loses_nothing_and_another_the_same_at_any_angle():
