@@ -46,7 +46,7 @@ class Darkroom:
             for i in range(passes)
         ]
         self.maps = [
-            build_photon_map(self.compiled, batch, self.receivers, radius, threads=2)
+            PhotonMaps(build_photon_map(self.compiled, batch, self.receivers, radius, threads=2))
             for batch in self.batches
         ]
         self.photons = [batch.to_numpy() for batch in self.batches]
