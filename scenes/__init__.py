@@ -9,6 +9,15 @@ wavelengths in nanometres (`…_nm`) and angles in degrees (`…_deg`); files ma
     60.0
 """
 
+from scenes.absorption import (
+    CoefficientTable,
+    DecadicAbsorption,
+    ExtinctionAbsorption,
+    ExtinctionTable,
+    InternalTransmittance,
+    NapierianAbsorption,
+    TransmittanceTable,
+)
 from scenes.camera import Camera
 from scenes.emission import Blackbody, Laser, Lines, SpectrumTable
 from scenes.emitters import Beam, Point, RectangleLamp, RoundProfile, SlitProfile, SphereLamp, Spot
@@ -16,20 +25,26 @@ from scenes.errors import Problem, SceneError
 from scenes.files import gallery, gallery_path, load, loads, schema
 from scenes.film import Film
 from scenes.frames import rotation_matrix
-from scenes.materials import Absorber, Dielectric, Lambertian, ReflectanceTable
+from scenes.materials import Absorber, Dielectric, Lambertian, Metal, Mirror, is_specular
 from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMedium
+from scenes.metals import MetalTable
 from scenes.objects import SceneObject
+from scenes.reflectance import ReflectanceTable
 from scenes.scene import RenderDefaults, Scene
 from scenes.shapes import (
     Box,
     Disk,
+    HeightField,
     Lens,
     LensSurface,
+    Mesh,
     Plane,
     Polyhedron,
     Prism,
     Rectangle,
     Sphere,
+    Triangulated,
+    Wave,
 )
 
 __all__ = [
@@ -39,15 +54,26 @@ __all__ = [
     "Box",
     "Camera",
     "CauchyMedium",
+    "CoefficientTable",
     "ConstantMedium",
+    "DecadicAbsorption",
     "Dielectric",
     "Disk",
+    "ExtinctionAbsorption",
+    "ExtinctionTable",
     "Film",
+    "HeightField",
+    "InternalTransmittance",
     "Lambertian",
     "Laser",
     "Lens",
     "LensSurface",
     "Lines",
+    "Mesh",
+    "Metal",
+    "MetalTable",
+    "Mirror",
+    "NapierianAbsorption",
     "Plane",
     "Point",
     "Polyhedron",
@@ -68,8 +94,12 @@ __all__ = [
     "SphereLamp",
     "Spot",
     "TableMedium",
+    "TransmittanceTable",
+    "Triangulated",
+    "Wave",
     "gallery",
     "gallery_path",
+    "is_specular",
     "load",
     "loads",
     "rotation_matrix",

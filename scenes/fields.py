@@ -7,13 +7,17 @@ so that a field's type alone says whether it is scaled. Models built in Python a
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Final
+from pathlib import Path
+from typing import Annotated, Any, Final
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, AllowInfNan, Field, Strict, ValidationInfo
 
 from scenes.errors import Problem, refusal
 
 __all__ = [
+    "MAX_INVERSE_LENGTH_PER_M",
     "MAX_LENGTH_M",
     "MIN_SIZE_M",
     "UNITS_PER_METRE",
@@ -23,6 +27,7 @@ __all__ = [
     "Curvature",
     "Degrees",
     "Direction",
+    "InverseLength",
     "NonNegative",
     "Number",
     "Position",
@@ -31,8 +36,10 @@ __all__ = [
     "SignedRadius",
     "Size",
     "Wavelength",
+    "folder_of",
     "is_file",
     "length_text",
+    "metres",
     "unit_context",
 ]
 
@@ -42,6 +49,9 @@ UNITS_PER_METRE: Final = {"m": 1.0, "mm": 1000.0}
 MAX_LENGTH_M: Final = 1e9
 """No coordinate or size may exceed this: squares and cubes of lengths must stay finite."""
 
+MAX_INVERSE_LENGTH_PER_M: Final = 1e30
+"""No absorption coefficient may exceed this: nothing passes an atom's layer of it."""
+
 MIN_SIZE_M: Final = 1e-9
 """No size may be smaller: geometrical optics ended long before a nanometre."""
 
@@ -49,16 +59,27 @@ WAVELENGTH_RANGE_NM: Final = (10.0, 1e6)
 """From the extreme ultraviolet to the far infrared: no optical medium is described beyond."""
 
 _CONTEXT_KEY = "length_unit"
+_FOLDER_KEY = "folder"
 
 
-def unit_context(length_unit: str) -> dict[str, str]:
-    """The validation context of a file whose lengths are in `length_unit` ("m" or "mm")."""
-    return {_CONTEXT_KEY: length_unit}
+def unit_context(length_unit: str, folder: Path | None = None) -> dict[str, Any]:
+    """The validation context of a file.
+
+    Args:
+        length_unit: of its lengths, "m" or "mm".
+        folder: where the files that it names are; None: the current folder.
+    """
+    return {_CONTEXT_KEY: length_unit, _FOLDER_KEY: folder or Path()}
 
 
 def is_file(info: ValidationInfo) -> bool:
     """Whether a file is being read, rather than a model built in Python."""
     return isinstance(info.context, Mapping) and _CONTEXT_KEY in info.context
+
+
+def folder_of(info: ValidationInfo) -> Path | None:
+    """The folder of the file that is being read; None for a model built in Python."""
+    return Path(info.context[_FOLDER_KEY]) if info.context and is_file(info) else None
 
 
 def _unit(info: ValidationInfo) -> str:
@@ -69,6 +90,11 @@ def length_text(length_m: float, info: ValidationInfo) -> str:
     """A length for a message, in the unit of the file that is being read."""
     unit = _unit(info)
     return f"{length_m * UNITS_PER_METRE[unit]:.6g} {unit}"
+
+
+def metres(lengths: NDArray[np.float64], info: ValidationInfo) -> NDArray[np.float64]:
+    """Lengths in the unit of the file that is being read, in metres."""
+    return lengths / UNITS_PER_METRE[_unit(info)]
 
 
 def _coordinate_m(length: float, info: ValidationInfo) -> float:
@@ -101,6 +127,15 @@ def _curvature_per_m(curvature: float, info: ValidationInfo) -> float:
         allowed = f"a radius of at least {length_text(MIN_SIZE_M, info)}"
         raise refusal(Problem("", f"must mean {allowed}, is {curvature:.6g}", curvature, allowed))
     return curvature_per_m
+
+
+def _per_metre(per_length: float, info: ValidationInfo) -> float:
+    per_metre = per_length * UNITS_PER_METRE[_unit(info)]
+    if per_metre > MAX_INVERSE_LENGTH_PER_M:
+        highest = MAX_INVERSE_LENGTH_PER_M / UNITS_PER_METRE[_unit(info)]
+        allowed = f"at most {highest:g} per {_unit(info)}"
+        raise refusal(Problem("", f"must be {allowed}, is {per_length:g}", per_length, allowed))
+    return per_metre
 
 
 def _normalised(direction: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -144,6 +179,9 @@ SignedRadius = Annotated[Number, AfterValidator(_signed_radius_m)]
 
 Curvature = Annotated[Number, AfterValidator(_curvature_per_m)]
 """The inverse of a signed radius [1/m]; in a file in mm it is written in 1/mm."""
+
+InverseLength = Annotated[Number, Field(ge=0), AfterValidator(_per_metre)]
+"""A coefficient per length, 0 or more [1/m]; in a file in mm it is written in 1/mm."""
 
 Position = tuple[Coordinate, Coordinate, Coordinate]
 """A point [m]."""

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from scenes.errors import Problem, refusal
 from scenes.materials import Dielectric, Material
 from scenes.model import SceneModel
-from scenes.shapes import Shape
+from scenes.shapes import Shape, Triangulated
 
 __all__ = ["SceneObject"]
 
@@ -22,9 +22,13 @@ class SceneObject(SceneModel):
     @model_validator(mode="after")
     def _medium_is_enclosed(self) -> Self:
         if isinstance(self.material, Dielectric) and not self.shape.is_closed:
-            allowed = "lambertian or absorber, or a closed shape: sphere, box, prism, lens, …"
+            allowed = (
+                "lambertian, mirror, conductor or absorber,"
+                " or a closed shape: sphere, box, prism, lens, …"
+            )
+            why = f" ({self.shape.openness})" if isinstance(self.shape, Triangulated) else ""
             message = (
-                f"a {self.shape.type} encloses no volume that a dielectric could fill;"
+                f"a {self.shape.type} encloses no volume that a dielectric could fill{why};"
                 f" allowed: {allowed}"
             )
             raise refusal(Problem("material.type", message, self.material.type, allowed))

@@ -36,7 +36,8 @@ from sim.launch import load_kernels
 from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
-from sim.photons.photon_map import PhotonMap, build_photon_map, make_collect, make_reorder
+from sim.photons.photon_map import make_collect, make_reorder
+from sim.photons.photon_maps import PhotonMaps, build_photon_maps
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
@@ -98,10 +99,10 @@ def render(
     books = []
     rule = StopRule(plan, watch)
     with closing(studio.photon_maps()) as photon_maps:
-        for pass_index, (photon_map, pass_books) in enumerate(photon_maps):
+        for pass_index, (maps, pass_books) in enumerate(photon_maps):
             books.append(pass_books)
             with watch.timing("gather"):
-                studio.expose(film, photon_map, pass_index)
+                studio.expose(film, maps, pass_index)
             if film.passes % film.turns == 0 and rule.ends_after(film):
                 break
     return Picture(
@@ -138,7 +139,7 @@ def compile_lamps_for(
         return compile_lamps(compiled, edges_nm, plan.photons, view=survey)
     return compile_guided_lamps(
         compiled, edges_nm, plan.photons, view=survey, seed=plan.seed,
-        max_interactions=plan.max_interactions, threads=plan.threads,
+        max_interactions=plan.max_interactions, bounces=plan.bounces, threads=plan.threads,
     )
 
 
@@ -173,7 +174,7 @@ class _Studio:
     radius: float
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[tuple[PhotonMap, EnergyBooks], None, None]:
+    def photon_maps(self) -> Generator[tuple[PhotonMaps, EnergyBooks], None, None]:
         """The photon map of each pass, in order, and its energy books.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
@@ -193,7 +194,7 @@ class _Studio:
 
     def _photon_map(
         self, pass_index: int, stop: threading.Event
-    ) -> tuple[PhotonMap, EnergyBooks]:
+    ) -> tuple[PhotonMaps, EnergyBooks]:
         """Emit and trace the photons of one pass, and map them."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
@@ -204,26 +205,24 @@ class _Studio:
                 max_interactions=self.plan.max_interactions,
                 threads=self.plan.threads,
                 store_direct=self.plan.direct_light == "photons",
+                bounces=self.plan.bounces,
                 stop=stop,
                 on_done=self.watch.count_photons,
             )
+        radius = self.radius * radius_shrinkage(pass_index, self.plan.alpha)
         with self.watch.timing("build photon map"):
-            photon_map = build_photon_map(
-                self.compiled,
-                batch,
-                self.receivers,
-                self.radius * radius_shrinkage(pass_index, self.plan.alpha),
-                threads=self.plan.threads,
-                stop=stop,
+            maps = build_photon_maps(
+                self.compiled, batch, self.receivers, radius, seed=self.plan.seed,
+                pass_index=pass_index, threads=self.plan.threads, stop=stop,
             )
-        return photon_map, batch.books
+        return maps, batch.books
 
-    def expose(self, film: Film, photon_map: PhotonMap, pass_index: int) -> None:
+    def expose(self, film: Film, maps: PhotonMaps, pass_index: int) -> None:
         """Expose the film to one pass."""
         self.watch.pass_index = pass_index
         lights = compose_lights(
             self.plan.precision,
-            photon_map,
+            maps,
             self.receivers,
             self.lamps,
             direct=self.plan.direct_light == "lamps",

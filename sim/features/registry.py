@@ -18,6 +18,7 @@ from typing import Literal
 
 import scenes
 from sim.features.flags import Features
+from sim.scene_neighbours import near_pairs
 from spectra import Medium
 
 __all__ = [
@@ -41,6 +42,7 @@ class Subject:
         air_powers: of each medium, the power of the index of air that its index is multiplied by.
         direct_light: the setting of this name; None: not known.
         precision: the setting of this name; None: not known.
+        bounces: the setting of this name; None: not known.
     """
 
     scene: scenes.Scene
@@ -48,6 +50,7 @@ class Subject:
     air_powers: tuple[int, ...]
     direct_light: str | None = None
     precision: str | None = None
+    bounces: int | None = None
 
     @cached_property
     def has_boundaries(self) -> bool:
@@ -55,13 +58,34 @@ class Subject:
         return any(isinstance(item.material, scenes.Dielectric) for item in self.scene.objects)
 
     @cached_property
+    def near_pairs(self) -> list[tuple[int, int]]:
+        """Pairs of objects, one of them made of a medium, that may touch, nest or overlap."""
+        return near_pairs(self.scene)
+
+    @cached_property
     def varying_media(self) -> tuple[bool, ...]:
-        """Of each medium, whether its index depends on the wavelength.
+        """Of each medium, whether its index depends on the wavelength, or what it absorbs.
 
         Air disperses too, and is a factor of the indices that are converted.
         """
         pairs = zip(self.media, self.air_powers, strict=True)
-        return tuple(medium.is_dispersive or power != 0 for medium, power in pairs)
+        return tuple(
+            medium.is_dispersive or power != 0 or is_tinted(medium) for medium, power in pairs
+        )
+
+    @cached_property
+    def finishes(self) -> tuple[scenes.Mirror | scenes.Metal, ...]:
+        """The mirrors and metals, one an object that has such a surface."""
+        return tuple(
+            item.material
+            for item in self.scene.objects
+            if isinstance(item.material, scenes.Mirror | scenes.Metal)
+        )
+
+
+def is_tinted(medium: Medium) -> bool:
+    """Whether what a medium absorbs depends on the wavelength."""
+    return medium.absorption is not None and not medium.absorption.is_constant
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ import warp as wp
 
 from sim.photons.lamp_structs import make_lamp_structs
 from sim.photons.lamps import Lamps
-from sim.photons.photon_map import PhotonMap, make_map_structs
+from sim.photons.photon_map import make_map_structs
+from sim.photons.photon_maps import PhotonMaps
 from sim.photons.receivers import make_receiver_structs
 from sim.precision import precision_types
 
@@ -39,9 +40,11 @@ def make_sight_struct(precision: str) -> Any:
 
 @functools.cache
 def make_lights_struct(precision: str) -> Any:
-    """Struct Lights: the photon map, how receivers reflect, and the lamps.
+    """Struct Lights: the photon maps, how receivers reflect, and the lamps.
 
-    `direct` is 1 where the map leaves out what comes straight from the lamps.
+    `photons` are those that lamps, glass and mirrors have sent, `bounced` those that a diffuse
+    surface has; `interreflection` is 1 where there may be any. `direct` is 1 where the maps leave
+    out what comes straight from the lamps.
     """
     map_type = make_map_structs(precision).Map
     receivers_type = make_receiver_structs(precision).Receivers
@@ -50,27 +53,36 @@ def make_lights_struct(precision: str) -> Any:
     @wp.struct
     class Lights:
         photons: map_type
+        bounced: map_type
         receivers: receivers_type
         lamps: lamps_type
         direct: int
+        interreflection: int
 
     return Lights
 
 
 def compose_lights(
-    precision: str, photon_map: PhotonMap, receivers: Any, lamps: Lamps, *, direct: bool
+    precision: str,
+    maps: PhotonMaps,
+    receivers: Any,
+    lamps: Lamps,
+    *,
+    direct: bool,
 ) -> Any:
     """The device-side Lights struct of one pass.
 
     Args:
         precision: "float32" or "float64".
-        photon_map: the pass's photons.
+        maps: the pass's photons.
         receivers: the device-side Receivers struct.
         lamps: the scene's lamps.
         direct: whether to add what comes straight from the lamps: the map must not hold it.
     """
     lights = make_lights_struct(precision)()
-    lights.photons = photon_map.data
+    lights.photons = maps.straight.data
+    lights.bounced = (maps.bounced or maps.straight).data
+    lights.interreflection = int(maps.bounced is not None)
     lights.receivers = receivers
     lights.lamps = lamps.data
     lights.direct = int(direct)

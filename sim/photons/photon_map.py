@@ -26,7 +26,13 @@ from sim.photons.receivers import DEALS, make_receiver_structs
 from sim.precision import precision_types
 from sim.scene_data import CompiledScene
 
-__all__ = ["PhotonMap", "build_photon_map", "make_collect", "make_map_structs", "make_reorder"]
+__all__ = [
+    "PhotonMap",
+    "build_photon_map",
+    "make_collect",
+    "make_map_structs",
+    "make_reorder",
+]
 
 _RANGE_SIZE = 65536
 
@@ -81,6 +87,7 @@ def make_collect(precision: str) -> Any:
         photons: photons_type,
         slots: wp.array(dtype=int),
         receivers: receivers_type,
+        stands_for: real,
         out: map_type,
     ):
         i = start + wp.tid()
@@ -88,7 +95,7 @@ def make_collect(precision: str) -> Any:
         surface = photons.surface[slot]
         out.position[i] = photons.position[slot]
         out.surface[i] = surface
-        flux = real(photons.flux[slot])
+        flux = real(photons.flux[slot]) * stands_for
         if is_dispersed(photons.history[slot]) == 1:
             wavelength_nm = real(photons.wavelength_nm[slot])
             band = int(
@@ -170,7 +177,7 @@ def build_photon_map(
         return PhotonMap(loose, grid, 0)
     ranges = cut_ranges(count, _RANGE_SIZE)
     slots: Any = wp.array(batch.slots, dtype=int, device=device)
-    inputs = [batch.data, slots, receivers, loose]
+    inputs = [batch.data, slots, receivers, float(batch.stands_for), loose]
     launch_ranges(
         make_collect(precision), ranges, lambda _: inputs, device=device, threads=threads, stop=stop
     )

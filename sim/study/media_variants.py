@@ -12,11 +12,12 @@ from typing import TypeAlias
 import numpy as np
 
 import scenes
-from scenes.media import DescribedMedium, resolve_medium
+from scenes.absorption import describe_absorption
+from scenes.media import DescribedMedium
 from spectra import Medium
 from spectra.units import NM_PER_UM
 
-__all__ = ["TABLE_STEP_NM", "with_cauchy_media", "with_tabulated_media"]
+__all__ = ["TABLE_STEP_NM", "with_cauchy_media", "with_tabulated_media", "without_absorption"]
 
 TABLE_STEP_NM = 20.0
 """Between the knots of a table: catalogues of glass print about that many."""
@@ -59,6 +60,23 @@ def with_tabulated_media(scene: scenes.Scene) -> scenes.Scene:
     return _rewrite(scene, tabulate)
 
 
+def without_absorption(scene: scenes.Scene) -> scenes.Scene:
+    """The scene with every object's medium clear; the ambient one stays as it is."""
+
+    def cleared(item: scenes.SceneObject) -> scenes.SceneObject:
+        material = item.material
+        if not isinstance(material, scenes.Dielectric) or material.resolved().absorption is None:
+            return item
+        medium = material.medium
+        if isinstance(medium, DescribedMedium):
+            medium = medium.model_copy(update={"absorption": None})
+        clear = material.model_copy(update={"medium": medium, "absorption": None})
+        return item.model_copy(update={"material": clear})
+
+    objects = tuple(map(cleared, scene.objects))
+    return scene if objects == scene.objects else scene.model_copy(update={"objects": objects})
+
+
 def _rewrite(scene: scenes.Scene, describe: _Describe) -> scenes.Scene:
     """The scene with each dispersive medium described by `describe(medium, low_nm, high_nm)`."""
     low_nm, high_nm = (float(edge) for edge in scene.film.edges_nm[[0, -1]])
@@ -66,12 +84,12 @@ def _rewrite(scene: scenes.Scene, describe: _Describe) -> scenes.Scene:
     def redescribed(item: scenes.SceneObject) -> scenes.SceneObject:
         if not isinstance(item.material, scenes.Dielectric):
             return item
-        medium = resolve_medium(item.material.medium)
+        medium = item.material.resolved()
         if not medium.is_dispersive:
             return item
-        material = scenes.Dielectric.model_validate(
-            {"medium": describe(medium, low_nm, high_nm)}
-        )
+        absorbs = None if medium.absorption is None else describe_absorption(medium.absorption)
+        described = {"medium": describe(medium, low_nm, high_nm), "absorption": absorbs}
+        material = item.material.model_copy(update=described)
         return item.model_copy(update={"material": material})
 
     return scene.model_copy(update={"objects": tuple(map(redescribed, scene.objects))})
