@@ -17,6 +17,7 @@ import scenes
 from scenes.frames import frame_about
 from sim.device_arrays import struct_array
 from sim.features import Features, find_features
+from sim.mesh_data import compile_meshes
 from sim.method import Method
 from sim.precision import precision_types
 from sim.scene_media import SceneMedia, collect_media
@@ -30,6 +31,7 @@ from sim.scene_structs import (
     MIRROR,
     SHAPE_FLAT,
     SHAPE_LENS,
+    SHAPE_MESH,
     SHAPE_POLYHEDRON,
     SHAPE_SPHERE,
     make_scene_structs,
@@ -165,6 +167,7 @@ def _fill_shapes(
     rows: dict[str, list[Row]] = {
         name: [] for name in ("spheres", "flats", "polyhedra", "planes", "lenses")
     }
+    meshes: list[tuple[scenes.Triangulated, FloatArray, int]] = []
     places: list[tuple[int, int]] = []
     for prim, item in enumerate(scene.objects):
         shape = item.shape
@@ -178,6 +181,9 @@ def _fill_shapes(
         elif isinstance(shape, scenes.Rectangle | scenes.Disk | scenes.Plane):
             places.append((int(SHAPE_FLAT), len(rows["flats"])))
             rows["flats"].append(_flat_row(shape, centre, prim))
+        elif isinstance(shape, scenes.Triangulated):
+            places.append((int(SHAPE_MESH), len(meshes)))
+            meshes.append((shape, centre, prim))
         else:
             places.append((int(SHAPE_POLYHEDRON), len(rows["polyhedra"])))
             normals, offsets = shape.faces()
@@ -189,6 +195,7 @@ def _fill_shapes(
     data.polyhedra = struct_array(structs.Polyhedron, rows["polyhedra"], device)
     data.planes = struct_array(structs.Plane, rows["planes"], device)
     data.lenses = struct_array(structs.Lens, rows["lenses"], device)
+    data.meshes = compile_meshes(meshes, precision=precision, device=device)
     data.sphere_count = len(rows["spheres"])
     data.flat_count = len(rows["flats"])
     data.polyhedron_count = len(rows["polyhedra"])

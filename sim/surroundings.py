@@ -27,10 +27,12 @@ from sim.geometry.height import (
     height_above_polyhedron,
     height_above_sphere,
 )
+from sim.geometry.mesh_height import height_above_mesh
 from sim.scene_structs import (
     DIELECTRIC,
     SHAPE_FLAT,
     SHAPE_LENS,
+    SHAPE_MESH,
     SHAPE_POLYHEDRON,
     SHAPE_SPHERE,
     make_scene_structs,
@@ -73,6 +75,12 @@ def make_height_function(precision: str, features: Features) -> object:
                 lens = scene.lenses[body.row]
                 height, face, normal = height_above_lens(lens, lens.frame * (point - lens.centre))
                 normal = wp.transpose(lens.frame) * normal
+        if wp.static(features.meshes):
+            if body.shape == SHAPE_MESH:
+                mesh = scene.meshes.rows[body.row]
+                height, face, normal = height_above_mesh(
+                    scene.meshes, mesh, point - mesh.centre, scene.touch
+                )
         return height, face, normal
 
     return height_above

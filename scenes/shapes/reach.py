@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scenes.shapes.convex import ConvexSolid
 from scenes.shapes.flat import Disk, FlatRectangle, Plane
 from scenes.shapes.lens import Lens
+from scenes.shapes.triangulated import Triangulated
 
 __all__ = ["close_pairs", "may_meet", "reach"]
 
@@ -29,7 +30,7 @@ def reach(shape: Any, direction: FloatArray) -> float:
     if isinstance(shape, Plane):
         across = float(np.linalg.norm(np.cross(shape.normal, direction)))
         return math.inf if across > 1e-12 else float(np.dot(shape.position, direction))
-    if isinstance(shape, ConvexSolid):
+    if isinstance(shape, ConvexSolid | Triangulated):
         return float(np.max(shape.vertices_world() @ direction))
     middle = float(np.dot(shape.position, direction))
     if isinstance(shape, FlatRectangle):

@@ -153,7 +153,7 @@ def make_trace_chain(precision: str, features: Features) -> Any:
             ray.face2 = met.face2
             # FNV-1a over the faces met (Fowler, Noll & Vo): 64 bits tell sequences apart.
             signature = (signature ^ wp.uint64(met.prim + 1)) * wp.uint64(1099511628211)
-            signature = (signature ^ wp.uint64(met.face + 1)) * wp.uint64(1099511628211)
+            signature = (signature ^ wp.uint64(met.part + 1)) * wp.uint64(1099511628211)
             step += 1
 
     return follow_chain
