@@ -21,7 +21,7 @@ from sim.mesh_data import compile_meshes
 from sim.method import Method
 from sim.precision import precision_types
 from sim.scene_media import SceneMedia, collect_media
-from sim.scene_neighbours import find_neighbours, touch_distance
+from sim.scene_neighbours import find_neighbours, rank_media, touch_distance
 from sim.scene_optics import fill_optics
 from sim.scene_structs import (
     ABSORBER,
@@ -235,12 +235,13 @@ def _bodies(
 ) -> list[Row]:
     """Each object's columns of a Body behind its shape's, see `sim.scene_structs`."""
     rows: list[Row] = []
+    ranks = rank_media(scene)
     first = 0
     for prim, item in enumerate(scene.objects):
         material, medium, finish = item.material, media.medium_of[prim], media.finish_of[prim]
-        priority, varies = 0, False
+        varies = False
         if isinstance(material, scenes.Dielectric):
-            kind, priority = DIELECTRIC, material.priority
+            kind = DIELECTRIC
             varies = medium != 0 and (media.varies[medium] or media.varies[0])
         elif isinstance(material, scenes.Mirror | scenes.Metal):
             kind = MIRROR if isinstance(material, scenes.Mirror) else METAL
@@ -249,7 +250,7 @@ def _bodies(
             kind = LAMBERTIAN if isinstance(material, scenes.Lambertian) else ABSORBER
         count = len(near[prim])
         rows.append(
-            (int(kind), medium, priority, finish, int(disperses and varies), first, count)
+            (int(kind), medium, ranks[prim], finish, int(disperses and varies), first, count)
         )
         first += count
     return rows

@@ -198,7 +198,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         row: int
         material: int
         medium_inside: int
-        priority: int
+        rank: int  # of two media in one place the higher rank's fills it
         finish: int  # row of its mirror or metal
         dispersive: int
         neighbour_first: int

@@ -66,6 +66,10 @@ EVENT_PASS = wp.constant(4)
 """A face hidden by another solid, the same medium on both sides: the light goes straight on."""
 
 
+MIN_COSINE = wp.constant(1e-3)
+"""A ray that grazes a face is not moved along it any further than one of this cosine."""
+
+
 @functools.cache
 def make_intersect(precision: str, features: Features):
     """Device function `intersect(scene, ray) -> Hit`, with only the shapes the scene has."""
@@ -328,6 +332,18 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                     met.reflectance = reflectance
                     met.reflected = reflected
                     met.refracted = refracted
+            if wp.static(features.interfaces):
+                # A third face in the place that the ray has just left has been dealt with there.
+                # Behind it, by more than the faces can be apart, no other one is met again.
+                if ray.prim >= 0 and hit.prim != ray.prim and body.material == DIELECTRIC:
+                    cos_theta = wp.abs(wp.dot(ray.direction, hit.normal))
+                    if hit.t * cos_theta <= scene.touch:
+                        met.event = EVENT_PASS
+                        met.dispersive = 0
+                        met.point += ray.direction * (
+                            scene.touch / wp.max(cos_theta, real(MIN_COSINE))
+                        )
+                        met.prim2 = -1
             if wp.static(features.finishes):
                 if body.material == MIRROR or body.material == METAL:
                     met.event = EVENT_BOUNDARY
