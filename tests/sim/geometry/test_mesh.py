@@ -12,7 +12,7 @@ from scenes.shapes import Surface
 from sim.device import start_device
 from sim.geometry.mesh import intersect_mesh, mesh_normal
 from sim.geometry.mesh_height import height_above_mesh
-from sim.mesh_data import compile_meshes
+from sim.mesh_data import PlacedMesh, compile_meshes
 from sim.mesh_structs import make_mesh_structs
 from sim.precision import precision_types
 
@@ -98,7 +98,9 @@ def make_probe(precision):
 
 @functools.cache
 def compiled(precision):
-    shapes = [(Given(position=(key, 0.0, 0.0)), CENTRE, row) for row, key in enumerate(SURFACES)]
+    shapes = [
+        PlacedMesh(Given(position=(key, 0.0, 0.0)), CENTRE, row) for row, key in enumerate(SURFACES)
+    ]
     return compile_meshes(shapes, precision=precision, device="cpu")
 
 
