@@ -17,7 +17,7 @@ import scenes
 from scenes.frames import frame_about
 from sim.device_arrays import struct_array
 from sim.features import Features, find_features
-from sim.mesh_data import compile_meshes
+from sim.mesh_data import PlacedMesh, compile_meshes
 from sim.method import Method
 from sim.precision import precision_types
 from sim.scene_media import SceneMedia, collect_media
@@ -167,7 +167,7 @@ def _fill_shapes(
     rows: dict[str, list[Row]] = {
         name: [] for name in ("spheres", "flats", "polyhedra", "planes", "lenses")
     }
-    meshes: list[tuple[scenes.Triangulated, FloatArray, int]] = []
+    meshes: list[PlacedMesh] = []
     places: list[tuple[int, int]] = []
     for prim, item in enumerate(scene.objects):
         shape = item.shape
@@ -183,7 +183,8 @@ def _fill_shapes(
             rows["flats"].append(_flat_row(shape, centre, prim))
         elif isinstance(shape, scenes.Triangulated):
             places.append((int(SHAPE_MESH), len(meshes)))
-            meshes.append((shape, centre, prim))
+            receives = isinstance(item.material, scenes.Lambertian)
+            meshes.append(PlacedMesh(shape, centre, prim, receives))
         else:
             places.append((int(SHAPE_POLYHEDRON), len(rows["polyhedra"])))
             normals, offsets = shape.faces()

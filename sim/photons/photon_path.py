@@ -65,7 +65,7 @@ def make_follow(precision: str, features: Features) -> object:
     scene_type, ray_type, hit_type = transport.Scene, transport.Ray, transport.Hit
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
-    intersect = transport.intersect
+    intersect, facet_toward = transport.intersect, transport.facet_toward
     both_branches = features.method.branching == "weights"
     losses = features.absorption or features.finishes
 
@@ -201,9 +201,12 @@ def make_follow(precision: str, features: Features) -> object:
                             goes_on = flux * diffuse_reflectance(scene, finish, wavelength_nm)
                             history = add_bounce(mark_dispersed(history, finish.varies))
                             draw = draws + wp.uint64(step)
-                            ray.direction = bounce(
-                                met.normal, hash64(job.key + wp.uint64(3), draw), flux
-                            )
+                            way = bounce(met.normal, hash64(job.key + wp.uint64(3), draw), flux)
+                            if wp.static(features.meshes):
+                                # About a smooth normal, but never through the facet.
+                                facet = facet_toward(scene, met, ray.direction)
+                                way -= facet * (real(2.0) * wp.min(wp.dot(way, facet), real(0.0)))
+                            ray.direction = way
                             ray.origin = met.point
                             ray.prim = met.prim
                             ray.face = met.face
