@@ -20,6 +20,7 @@ from scenes.materials import Absorber, Dielectric, Lambertian, ReflectanceTable
 from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMedium
 from scenes.objects import SceneObject
 from scenes.scene import RenderDefaults, Scene
+from scenes.sensors import IrradianceSensor, RaySensor
 from scenes.shapes import (
     Box,
     Disk,
@@ -43,6 +44,7 @@ __all__ = [
     "Dielectric",
     "Disk",
     "Film",
+    "IrradianceSensor",
     "Lambertian",
     "Laser",
     "Lens",
@@ -53,6 +55,7 @@ __all__ = [
     "Polyhedron",
     "Prism",
     "Problem",
+    "RaySensor",
     "Rectangle",
     "RectangleLamp",
     "ReflectanceTable",

@@ -25,6 +25,7 @@ from sim.photons.photon_structs import (
     surface_key,
 )
 from sim.sampling.roulette import choose_branches, play_roulette
+from sim.sensors.crossing import make_record_crossings
 from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
 
 __all__ = ["COLOURS", "make_trace_photons"]
@@ -51,6 +52,7 @@ def make_follow(precision: str, features: Features) -> object:
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
     intersect = transport.intersect
+    record_crossings = make_record_crossings(precision)
     both_branches = features.method.branching == "weights"
 
     @wp.func
@@ -96,6 +98,11 @@ def make_follow(precision: str, features: Features) -> object:
         hit = first
         step = int(0)
         while step < job.max_interactions:
+            if wp.static(features.sensors):
+                record_crossings(
+                    job, ray, hit.t, wavelength_nm, flux, history, draws + wp.uint64(step),
+                    out_photons, out_counts,
+                )
             met = scatter(scene, ray, hit, indices)
             if met.event == EVENT_BOUNDARY:
                 history = mark_dispersed(history, met.dispersive)
