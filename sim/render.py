@@ -36,6 +36,7 @@ from sim.launch import load_kernels
 from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
+from sim.photons.photon_batch import PhotonBatch
 from sim.photons.photon_map import PhotonMap, build_photon_map, make_collect, make_reorder
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.pilot import make_retrace_emission
@@ -43,6 +44,10 @@ from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
 from sim.scene_data import CompiledScene
+from sim.sensors.origin import Origin
+from sim.sensors.readings import read_sensors
+from sim.sensors.sensor_bank import SensorBank, compile_sensors
+from sim.sensors.tally import SensorTally
 from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
@@ -94,24 +99,31 @@ def render(
             passes=plan.passes,
         )
         radius = plan.radius or gather_radius(survey)
-    studio = _Studio(compiled, lamps, receivers, camera, plan, radius, watch)
+        sensors = compile_sensors(compiled)
+    studio = _Studio(compiled, lamps, receivers, camera, sensors, plan, radius, watch)
+    tally = SensorTally(sensors) if sensors is not None else None
     books = []
     rule = StopRule(plan, watch)
     with closing(studio.photon_maps()) as photon_maps:
-        for pass_index, (photon_map, pass_books) in enumerate(photon_maps):
-            books.append(pass_books)
+        for pass_index, (photon_map, batch) in enumerate(photon_maps):
+            books.append(batch.books)
+            if tally is not None and batch.crossings is not None:
+                tally.add(batch.crossings)
             with watch.timing("gather"):
                 studio.expose(film, photon_map, pass_index)
             if film.passes % film.turns == 0 and rule.ends_after(film):
                 break
+    energy, closed = EnergyBooks.mean(books), plan.closed(film.passes)
+    origin = Origin(scene=scene, settings=closed, energy=energy)
     return Picture(
         spectral_radiance=film.radiance(),
         standard_error=film.standard_error(),
         accuracy=film.accuracy(),
         edges_nm=edges_nm,
-        energy=EnergyBooks.mean(books),
+        energy=energy,
         scene=scene,
-        settings=plan.closed(film.passes),
+        settings=closed,
+        sensors=read_sensors(tally, origin) if tally is not None else {},
         stopping=rule.outcome,
         timings=watch.timings,
         features=choice.report(),
@@ -169,12 +181,13 @@ class _Studio:
     lamps: Lamps
     receivers: Any
     camera: Any
+    sensors: SensorBank | None
     plan: ResolvedSettings
     radius: float
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[tuple[PhotonMap, EnergyBooks], None, None]:
-        """The photon map of each pass, in order, and its energy books.
+    def photon_maps(self) -> Generator[tuple[PhotonMap, PhotonBatch], None, None]:
+        """The photon map of each pass, in order, and its photons.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
         and would leave the other cores idle.
@@ -193,7 +206,7 @@ class _Studio:
 
     def _photon_map(
         self, pass_index: int, stop: threading.Event
-    ) -> tuple[PhotonMap, EnergyBooks]:
+    ) -> tuple[PhotonMap, PhotonBatch]:
         """Emit and trace the photons of one pass, and map them."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
@@ -204,6 +217,7 @@ class _Studio:
                 max_interactions=self.plan.max_interactions,
                 threads=self.plan.threads,
                 store_direct=self.plan.direct_light == "photons",
+                sensors=self.sensors,
                 stop=stop,
                 on_done=self.watch.count_photons,
             )
@@ -216,7 +230,7 @@ class _Studio:
                 threads=self.plan.threads,
                 stop=stop,
             )
-        return photon_map, batch.books
+        return photon_map, batch
 
     def expose(self, film: Film, photon_map: PhotonMap, pass_index: int) -> None:
         """Expose the film to one pass."""

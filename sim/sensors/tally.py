@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+import scenes
+from sim.image.accuracy import Accuracy
 from sim.sensors.pass_crossings import PassCrossings
 from sim.sensors.sensor_bank import SensorBank
 
@@ -117,8 +119,6 @@ class SensorTally:
     """
 
     def __init__(self, bank: SensorBank) -> None:
-        import scenes
-
         self.bank = bank
         self.bins = Replicates.of_shape((bank.bin_count,))
         self.totals = Replicates.of_shape((len(bank.sensors),))
@@ -131,6 +131,28 @@ class SensorTally:
             RayStore(sensor.max_rays) if isinstance(sensor, scenes.RaySensor) else None
             for sensor in bank.sensors
         ]
+
+    @property
+    def rounds(self) -> int:
+        """Passes so far: independent replicates of everything."""
+        return self.bins.count
+
+    def accuracy(self) -> Accuracy:
+        """How sure the flux of each cell is, and the flux through sensors that keep rays.
+
+        Values are relative to the mean over their own sensor; there is no bias.
+        """
+        parts = [one for one in self.cells if one is not None]
+        parts += [one.flux for one in self.stores if one is not None]
+        lit = [one for one in parts if one.mean.mean() > 0.0]
+        values = [np.ravel(one.mean / one.mean.mean()) for one in lit]
+        errors = [np.ravel(one.standard_error / one.mean.mean()) for one in lit]
+        value, noise = np.concatenate([[], *values]), np.concatenate([[], *errors])
+        none = np.zeros_like(value)
+        return Accuracy(
+            luminance=value, noise=noise, bias=none, bias_noise=none, corrected_noise=noise,
+            replicates=self.rounds,
+        )
 
     def add(self, crossings: PassCrossings) -> None:
         """Take in one pass."""
