@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.atomic_file import write_whole
+from sim.sensors.origin import measured_text
 from spectra.observer import observer
 from spectra.srgb import xyz_to_linear_srgb
 from spectra.units import LUMINOUS_EFFICACY_LM_W
@@ -70,6 +71,13 @@ class IrradianceReading:
     def name(self) -> str:
         """The sensor's name."""
         return self.sensor.name
+
+    @property
+    def summary(self) -> str:
+        """What was measured, in a line."""
+        rows, columns, bands = self.spectral_irradiance.shape
+        measured = measured_text(self.flux, self.flux_error, self.media)
+        return f"{columns} × {rows} cells, {bands} bands; {measured}"
 
     @property
     def wavelengths_nm(self) -> FloatArray:

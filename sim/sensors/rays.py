@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.atomic_file import write_whole
 from sim.sensors.frames import sensor_frame
+from sim.sensors.origin import measured_text
 
 if TYPE_CHECKING:
     from scenes import RaySensor
@@ -91,6 +92,13 @@ class RaysReading:
     def name(self) -> str:
         """The sensor's name."""
         return self.sensor.name
+
+    @property
+    def summary(self) -> str:
+        """What was measured, in a line."""
+        thinned = "" if self.kept == 1.0 else f" of {self.crossings}"
+        measured = measured_text(self.total_flux, self.total_flux_error, self.media)
+        return f"{len(self)} rays{thinned}; {measured}"
 
     @cached_property
     def place(self) -> FloatArray:

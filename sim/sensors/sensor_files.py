@@ -76,7 +76,7 @@ def _archive(reading: IrradianceReading | RaysReading, names: tuple[str, ...]) -
     arrays: dict[str, Any] = {name: np.asarray(getattr(reading, name)) for name in names}
     arrays.update(_origin_texts(reading))
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)
+    np.savez(buffer, **arrays)
     return buffer.getbuffer()
 
 

@@ -144,10 +144,10 @@ class SensorTally:
         """
         parts = [one for one in self.cells if one is not None]
         parts += [one.flux for one in self.stores if one is not None]
-        lit = [one for one in parts if one.mean.mean() > 0.0]
-        values = [np.ravel(one.mean / one.mean.mean()) for one in lit]
-        errors = [np.ravel(one.standard_error / one.mean.mean()) for one in lit]
-        value, noise = np.concatenate([[], *values]), np.concatenate([[], *errors])
+        scales = [float(one.mean.mean()) or 1.0 for one in parts]
+        pairs = list(zip(parts, scales, strict=True))
+        value = np.concatenate([np.ravel(one.mean) / scale for one, scale in pairs])
+        noise = np.concatenate([np.ravel(one.standard_error) / scale for one, scale in pairs])
         none = np.zeros_like(value)
         return Accuracy(
             luminance=value, noise=noise, bias=none, bias_noise=none, corrected_noise=noise,
