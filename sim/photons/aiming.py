@@ -172,10 +172,10 @@ def find_aims(
     found = list(enumerate(compiled.scene.objects))
     # A plane without end cannot be aimed at.
     finite = [(prim, one) for prim, one in found if not isinstance(one.shape, scenes.Plane)]
-    specular = [one for _, one in finite if isinstance(one.material, scenes.Dielectric)]
     measures = sensors and len(compiled.scene.sensors) > 0
     # Without a camera receivers are all there is to see, unless there are sensors.
     unseen = SMALLEST_WEIGHT if measures else 1.0
+    specular = [one for _, one in finite if scenes.is_specular(one.material)]
     receivers = [
         (prim, one, unseen if view is None else max(view.fraction(prim), SMALLEST_WEIGHT))
         for prim, one in finite
@@ -232,7 +232,7 @@ def _cone(share: float, compiled: CompiledScene, item: scenes.SceneObject, margi
         np.eye(3),
         np.zeros(2),
         radius + margin,
-        isinstance(item.material, scenes.Dielectric),
+        scenes.is_specular(item.material),
         np.zeros(0),
     )
 

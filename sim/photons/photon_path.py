@@ -26,7 +26,13 @@ from sim.photons.photon_structs import (
 )
 from sim.sampling.roulette import choose_branches, play_roulette
 from sim.sensors.crossing import make_record_crossings
-from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+from sim.transport import (
+    EVENT_ABSORB,
+    EVENT_BOUNDARY,
+    EVENT_DEPOSIT,
+    EVENT_PASS,
+    make_transport,
+)
 
 __all__ = ["COLOURS", "make_trace_photons"]
 
@@ -48,12 +54,14 @@ def make_follow(precision: str, features: Features) -> object:
     transport = make_transport(precision, features)
     real, vec3, scatter = transport.real, transport.vec3, transport.scatter
     media_indices, split = transport.media_indices, transport.split
+    absorption_of = transport.absorption_of
     scene_type, ray_type, hit_type = transport.Scene, transport.Ray, transport.Hit
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
     intersect = transport.intersect
     record_crossings = make_record_crossings(precision)
     both_branches = features.method.branching == "weights"
+    losses = features.absorption or features.finishes
 
     @wp.func
     def store(
@@ -98,14 +106,21 @@ def make_follow(precision: str, features: Features) -> object:
         hit = first
         step = int(0)
         while step < job.max_interactions:
-            if wp.static(features.sensors):
-                record_crossings(
-                    job, ray, hit.t, wavelength_nm, flux, history, draws + wp.uint64(step),
-                    out_photons, out_counts,
-                )
             met = scatter(scene, ray, hit, indices)
+            if wp.static(features.sensors):
+                alpha = real(0.0)
+                if wp.static(features.absorption):
+                    alpha = absorption_of(indices, met.medium)
+                record_crossings(
+                    job, ray, hit.t, alpha, wavelength_nm, flux, history,
+                    draws + wp.uint64(step), out_photons, out_counts,
+                )
+            history = mark_dispersed(history, met.dispersive)
+            if wp.static(losses):
+                lost = flux * met.absorbed
+                absorbed += lost
+                flux -= lost
             if met.event == EVENT_BOUNDARY:
-                history = mark_dispersed(history, met.dispersive)
                 stronger, weaker, refracts = split(met)
                 side_flux = flux * met.reflectance
                 if refracts == 0:
@@ -116,6 +131,8 @@ def make_follow(precision: str, features: Features) -> object:
                 ray.direction = stronger
                 ray.prim = met.prim
                 ray.face = met.face
+                ray.prim2 = met.prim2
+                ray.face2 = met.face2
                 draw = draws + wp.uint64(step)
                 before = flux
                 room = depth < STACK_SIZE
@@ -133,6 +150,8 @@ def make_follow(precision: str, features: Features) -> object:
                     side_ray.direction = weaker
                     side_ray.prim = met.prim
                     side_ray.face = met.face
+                    side_ray.prim2 = met.prim2
+                    side_ray.face2 = met.face2
                     stack_ray[depth] = side_ray
                     stack_flux[depth] = side_flux
                     stack_history[depth] = side_history
@@ -141,6 +160,16 @@ def make_follow(precision: str, features: Features) -> object:
                 # fainter, would use up the interactions that the branches behind it need.
                 flux = play_roulette(flux, threshold, job.key + wp.uint64(2), draw)
                 culled += before - flux - side_flux
+                alive = flux > real(0.0)
+            elif met.event == EVENT_PASS:
+                # It is an event all the same: shadow rays stop here, so that the light behind is
+                # the photons'.
+                history = add_event(history, 1)
+                ray.origin = met.point
+                ray.prim = met.prim
+                ray.face = met.face
+                ray.prim2 = met.prim2
+                ray.face2 = met.face2
                 alive = flux > real(0.0)
             else:
                 alive = False
@@ -168,6 +197,8 @@ def make_follow(precision: str, features: Features) -> object:
                 ray.direction = pending.direction
                 ray.prim = pending.prim
                 ray.face = pending.face
+                ray.prim2 = pending.prim2
+                ray.face2 = pending.face2
                 flux = stack_flux[depth]
                 history = stack_history[depth]
                 alive = True

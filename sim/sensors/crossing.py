@@ -12,6 +12,7 @@ import functools
 import warp as wp
 
 from sim.geometry.flat import plane_coordinates
+from sim.optics.absorption import absorbed_fraction
 from sim.photons.photon_structs import make_photon_structs
 from sim.sampling.counter import hash64, to_unit
 from sim.scene_structs import make_scene_structs
@@ -90,10 +91,14 @@ def make_record_crossings(precision: str) -> object:
 
     @wp.func
     def record_crossings(
-        job: job_type, ray: ray_type, t: real, wavelength_nm: real, flux: real, history: int,
-        draw: wp.uint64, out_photons: photons_type, out_counts: wp.array2d(dtype=int),
+        job: job_type, ray: ray_type, t: real, alpha: real, wavelength_nm: real, flux: real,
+        history: int, draw: wp.uint64, out_photons: photons_type,
+        out_counts: wp.array2d(dtype=int),
     ):
-        """Record every sensor that the photon arrives at within the length t of its way."""
+        """Record every sensor that the photon arrives at within the length t of its way.
+
+        It starts with `flux`, and on its way loses what a medium of the coefficient alpha takes.
+        """
         crossings = out_photons.crossings
         i = int(0)
         while i < job.sensors.count:
@@ -106,15 +111,16 @@ def make_record_crossings(precision: str) -> object:
                 slot = wp.atomic_add(out_counts, job.range_row, column, 1)
                 if slot < job.slot_count:
                     slot += job.first_slot
+                    left = flux - flux * absorbed_fraction(alpha, length)
                     if sensor.kind == SENSOR_RAYS:
                         lot = to_unit(hash64(job.key + LOT_KEY, draw), wp.float32(0.0))
                         keep_ray(
                             crossings, slot, i, ray.origin + ray.direction * length, ray.direction,
-                            wavelength_nm, flux, history, job.emitter, lot,
+                            wavelength_nm, left, history, job.emitter, lot,
                         )
                     else:
                         crossings.bin[slot] = bin_of(job, sensor, u, v, wavelength_nm)
-                        crossings.bin_flux[slot] = wp.float64(flux)
+                        crossings.bin_flux[slot] = wp.float64(left)
             i += 1
 
     return record_crossings

@@ -6,11 +6,12 @@ import numpy.typing as npt
 import scenes
 from scenes.frames import frame_about
 
-__all__ = ["sensor_frame", "sensor_half"]
+__all__ = ["AnySensor", "sensor_frame", "sensor_half"]
 
 FloatArray = npt.NDArray[np.float64]
 
 AnySensor = scenes.IrradianceSensor | scenes.RaySensor
+"""Any sensor."""
 
 
 def sensor_frame(sensor: AnySensor) -> FloatArray:

@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 import scenes
+from sim.device_arrays import struct_array
 from sim.precision import precision_types
-from sim.scene_data import CompiledScene, struct_array
+from sim.scene_data import CompiledScene
 from sim.sensors.frames import sensor_frame, sensor_half
 from sim.sensors.sensor_structs import SENSOR_BINS, SENSOR_RAYS, make_sensor_structs
 
