@@ -1,18 +1,19 @@
 """Materials: what a surface does to the light that meets it."""
 
+from dataclasses import replace
 from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, Strict, model_validator
 
-from scenes.absorption import AbsorptionSpec
+from scenes.absorption import PUBLISHED, AbsorptionChoice
 from scenes.errors import Problem, refusal
 from scenes.media import DescribedMedium, MediumSpec, coloured, resolve_medium
 from scenes.metals import MetalSpec, resolve_metal
 from scenes.model import SceneModel
 from scenes.reflectance import Reflectance, ReflectanceTable, reflectance_at
-from spectra import Conductor, Medium
+from spectra import Conductor, Medium, absorbing_media, published_absorption
 
 __all__ = ["Absorber", "Dielectric", "Lambertian", "Material", "Metal", "Mirror", "is_specular"]
 
@@ -25,8 +26,10 @@ class Dielectric(SceneModel):
         description='name of a glass, "air" or "vacuum" (a bubble), or a table that describes a'
         " medium"
     )
-    absorption: AbsorptionSpec | None = Field(
-        default=None, description="what the medium takes of the light on its way; nothing if absent"
+    absorption: AbsorptionChoice | None = Field(
+        default=None,
+        description='what the medium takes of the light on its way: "published" takes what is known'
+        " of a glass by name, a table describes it; nothing if absent",
     )
     priority: Annotated[int, Strict(), Field(ge=-1000, le=1000)] = Field(
         default=0,
@@ -43,9 +46,21 @@ class Dielectric(SceneModel):
             raise refusal(Problem("absorption", message, self.absorption, allowed))
         return self
 
+    @model_validator(mode="after")
+    def _is_published(self) -> Self:
+        if self.absorption == PUBLISHED and self.medium not in absorbing_media():
+            allowed = f"{PUBLISHED!r} for {', '.join(absorbing_media())}; else a table"
+            named = self.medium if isinstance(self.medium, str) else "a medium of the scene's own"
+            message = f"nothing is published of {named}; allowed: {allowed}"
+            raise refusal(Problem("absorption", message, self.absorption, allowed))
+        return self
+
     def resolved(self) -> Medium:
         """The medium inside, with its absorption."""
-        return coloured(resolve_medium(self.medium), self.absorption)
+        medium = resolve_medium(self.medium)
+        if isinstance(self.absorption, str):
+            return replace(medium, absorption=published_absorption(medium.name))
+        return coloured(medium, self.absorption)
 
 
 class Lambertian(SceneModel):
