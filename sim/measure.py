@@ -100,6 +100,7 @@ def measure(
                 threads=plan.threads,
                 store_direct=False,
                 sensors=bank,
+                bounces=plan.bounces,
                 on_done=watch.count_photons,
             )
         with watch.timing("read sensors"):

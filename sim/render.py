@@ -37,14 +37,23 @@ from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
 from sim.photons.photon_batch import PhotonBatch
-from sim.photons.photon_map import PhotonMap, build_photon_map, make_collect, make_reorder
+from sim.photons.photon_map import (
+    INDIRECT_KEPT,
+    INDIRECT_WIDTH,
+    PhotonMap,
+    build_photon_map,
+    make_collect,
+    make_reorder,
+)
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
+from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 from sim.sensors.origin import Origin
+from sim.sensors.pass_crossings import PassCrossings
 from sim.sensors.readings import read_sensors
 from sim.sensors.sensor_bank import SensorBank, compile_sensors
 from sim.sensors.tally import SensorTally
@@ -53,6 +62,9 @@ from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
 
 __all__ = ["compile_lamps_for", "gather_radius", "kernels_of", "radius_shrinkage", "render"]
+
+_THINNING_KEY = 0x7411
+"""Apart from every stream's number."""
 
 FOOTPRINTS_A_RADIUS = 2.0
 """The first pass gathers over a disc this many pixel widths in radius."""
@@ -105,12 +117,12 @@ def render(
     books = []
     rule = StopRule(plan, watch)
     with closing(studio.photon_maps()) as photon_maps:
-        for pass_index, (photon_map, batch) in enumerate(photon_maps):
-            books.append(batch.books)
-            if tally is not None and batch.crossings is not None:
-                tally.add(batch.crossings)
+        for pass_index, (maps, pass_books, crossings) in enumerate(photon_maps):
+            books.append(pass_books)
+            if tally is not None and crossings is not None:
+                tally.add(crossings)
             with watch.timing("gather"):
-                studio.expose(film, photon_map, pass_index)
+                studio.expose(film, maps, pass_index)
             if film.passes % film.turns == 0 and rule.ends_after(film):
                 break
     energy, closed = EnergyBooks.mean(books), plan.closed(film.passes)
@@ -150,7 +162,7 @@ def compile_lamps_for(
         return compile_lamps(compiled, edges_nm, plan.photons, view=survey)
     return compile_guided_lamps(
         compiled, edges_nm, plan.photons, view=survey, seed=plan.seed,
-        max_interactions=plan.max_interactions, threads=plan.threads,
+        max_interactions=plan.max_interactions, bounces=plan.bounces, threads=plan.threads,
     )
 
 
@@ -174,6 +186,18 @@ def gather_radius(survey: Survey) -> float:
 
 
 @dataclass(frozen=True)
+class _Maps:
+    """One pass's photons: those that no diffuse surface has reflected, and those that one has."""
+
+    straight: PhotonMap
+    bounced: PhotonMap | None
+
+
+_Pass = tuple[_Maps, EnergyBooks, PassCrossings | None]
+"""One pass: its photons in maps, where its energy went, and what sensors have seen of it."""
+
+
+@dataclass(frozen=True)
 class _Studio:
     """All that the passes of one run share."""
 
@@ -186,8 +210,8 @@ class _Studio:
     radius: float
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[tuple[PhotonMap, PhotonBatch], None, None]:
-        """The photon map of each pass, in order, and its photons.
+    def photon_maps(self) -> Generator[_Pass, None, None]:
+        """Each pass, in order.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
         and would leave the other cores idle.
@@ -204,10 +228,8 @@ class _Studio:
             finally:
                 stop.set()
 
-    def _photon_map(
-        self, pass_index: int, stop: threading.Event
-    ) -> tuple[PhotonMap, PhotonBatch]:
-        """Emit and trace the photons of one pass, and map them."""
+    def _photon_map(self, pass_index: int, stop: threading.Event) -> _Pass:
+        """Emit and trace the photons of one pass, and map them, one map for those that bounced."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
                 self.compiled,
@@ -218,29 +240,39 @@ class _Studio:
                 threads=self.plan.threads,
                 store_direct=self.plan.direct_light == "photons",
                 sensors=self.sensors,
+                bounces=self.plan.bounces,
                 stop=stop,
                 on_done=self.watch.count_photons,
             )
+        radius = self.radius * radius_shrinkage(pass_index, self.plan.alpha)
         with self.watch.timing("build photon map"):
-            photon_map = build_photon_map(
-                self.compiled,
-                batch,
-                self.receivers,
-                self.radius * radius_shrinkage(pass_index, self.plan.alpha),
-                threads=self.plan.threads,
-                stop=stop,
+            if not self.compiled.features.interreflection:
+                maps = _Maps(self._sorted(batch, radius, stop), None)
+                return maps, batch.books, batch.crossings
+            first = fold_key(self.plan.seed, pass_index, _THINNING_KEY) % INDIRECT_KEPT
+            straight, bounced = batch.parted(every=INDIRECT_KEPT, first=first)
+            maps = _Maps(
+                self._sorted(straight, radius, stop),
+                self._sorted(bounced, INDIRECT_WIDTH * radius, stop),
             )
-        return photon_map, batch
+        return maps, batch.books, batch.crossings
 
-    def expose(self, film: Film, photon_map: PhotonMap, pass_index: int) -> None:
+    def _sorted(self, batch: PhotonBatch, radius: float, stop: threading.Event) -> PhotonMap:
+        """The map of a batch."""
+        return build_photon_map(
+            self.compiled, batch, self.receivers, radius, threads=self.plan.threads, stop=stop
+        )
+
+    def expose(self, film: Film, maps: _Maps, pass_index: int) -> None:
         """Expose the film to one pass."""
         self.watch.pass_index = pass_index
         lights = compose_lights(
             self.plan.precision,
-            photon_map,
+            maps.straight,
             self.receivers,
             self.lamps,
             direct=self.plan.direct_light == "lamps",
+            bounced=maps.bounced,
         )
         expose(
             film,

@@ -22,6 +22,7 @@ class Features:
         interfaces: solids can touch, nest or overlap.
         absorption: some medium absorbs.
         finishes: light can meet a mirror or a metal.
+        interreflection: diffuse surfaces light one another.
         reflected_branches: boundaries can reflect.
         dispersion: boundaries can part light by its wavelength.
         undispersed_photons: photons that no dispersion has touched can be in the map.
@@ -44,6 +45,7 @@ class Features:
     interfaces: bool = True
     absorption: bool = True
     finishes: bool = True
+    interreflection: bool = True
     reflected_branches: bool = True
     dispersion: bool = True
     undispersed_photons: bool = True

@@ -67,6 +67,7 @@ def trace_photons(
     threads: int,
     store_direct: bool = True,
     sensors: SensorBank | None = None,
+    bounces: int = 0,
     stop: threading.Event | None = None,
     on_done: Callable[[int], None] | None = None,
     range_size: int = RANGE_SIZE,
@@ -83,6 +84,7 @@ def trace_photons(
         threads: CPU threads.
         store_direct: also store what comes straight from a lamp; else it is only in the books.
         sensors: what else the photons leave traces on; None: nothing.
+        bounces: off diffuse surfaces, at most, if the kernels know of them.
         stop: once set, from another thread, tracing ends; the batch is then incomplete.
         on_done: told of finished photons.
         range_size: photons a launch.
@@ -97,8 +99,8 @@ def trace_photons(
             shares.append(_Share(row, start, count, slot, room))
             slot += room
     run = _Run(
-        compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, sensors, stop,
-        branch_threshold,
+        compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, sensors,
+        bounces, stop, branch_threshold,
     )
     photons, counts, books = run.trace(shares, slot, on_done)
     if any(counts[i].max() > share.slot_count for i, share in enumerate(shares)):
@@ -143,6 +145,7 @@ class _Run:
     threads: int
     store_direct: bool
     sensors: SensorBank | None
+    bounces: int
     stop: threading.Event | None
     branch_threshold: float
 
@@ -194,6 +197,7 @@ class _Run:
         job.branch_threshold = self.branch_threshold
         if self.sensors is not None:
             job.sensors = self.sensors.data
+        job.bounces = self.bounces
         return job
 
 
