@@ -35,13 +35,17 @@ from scenes.sensors import IrradianceSensor, RaySensor
 from scenes.shapes import (
     Box,
     Disk,
+    HeightField,
     Lens,
     LensSurface,
+    Mesh,
     Plane,
     Polyhedron,
     Prism,
     Rectangle,
     Sphere,
+    Triangulated,
+    Wave,
 )
 
 __all__ = [
@@ -59,6 +63,7 @@ __all__ = [
     "ExtinctionAbsorption",
     "ExtinctionTable",
     "Film",
+    "HeightField",
     "InternalTransmittance",
     "IrradianceSensor",
     "Lambertian",
@@ -66,6 +71,7 @@ __all__ = [
     "Lens",
     "LensSurface",
     "Lines",
+    "Mesh",
     "Metal",
     "MetalTable",
     "Mirror",
@@ -92,6 +98,8 @@ __all__ = [
     "Spot",
     "TableMedium",
     "TransmittanceTable",
+    "Triangulated",
+    "Wave",
     "gallery",
     "gallery_path",
     "is_specular",
