@@ -4,6 +4,8 @@ Irradiance is flux per area, the same measure in every medium; but what arrives 
 been through its surface, and what arrives at a sensor flush with it has not.
 """
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -40,13 +42,35 @@ def media_at(scene: scenes.Scene, sensor: AnySensor) -> tuple[str, ...]:
     for item in scene.objects:
         if not isinstance(item.material, scenes.Dielectric):
             continue
-        height = height_above(item.shape, points)
-        if height is None:
-            continue
-        for k in np.flatnonzero((height < 0.0) & (item.material.priority > priorities)):
+        for k in np.flatnonzero(_inside(item.shape, points)):
+            if item.material.priority <= priorities[k]:
+                continue
             priorities[k] = item.material.priority
             names[k] = item.material.resolved().name
     return tuple(dict.fromkeys(names))
+
+
+def _inside(shape: Any, points: FloatArray) -> npt.NDArray[np.bool_]:
+    """Which points lie in a solid, (n,).
+
+    In one of triangles, by how often it winds around a point: the sum of the solid angles of its
+    triangles, over 4π (van Oosterom & Strackee 1983, "The solid angle of a plane triangle", IEEE
+    Trans. Biomed. Eng. 30(2), eq. 8).
+    """
+    height = height_above(shape, points)
+    if height is not None:
+        return height < 0.0
+    surface = shape.surface()
+    corners = (surface.vertices + np.asarray(shape.position))[surface.triangles]
+    found = np.zeros(len(points), dtype=bool)
+    for k, point in enumerate(points):
+        a, b, c = np.moveaxis(corners - point, 1, 0)
+        p, q, r = (np.linalg.norm(one, axis=1) for one in (a, b, c))
+        triple = np.sum(a * np.cross(b, c), axis=1)
+        rest = p * q * r + np.sum(a * b, axis=1) * r
+        rest += np.sum(b * c, axis=1) * p + np.sum(c * a, axis=1) * q
+        found[k] = np.sum(np.arctan2(triple, rest)) > np.pi
+    return found
 
 
 def _points(sensor: AnySensor) -> FloatArray:

@@ -31,6 +31,14 @@ BALL = scenes.SceneObject(
     name="ball", shape=scenes.Sphere(position=(0.0, 0.0, 0.0), radius=0.1),
     material=scenes.Dielectric(medium="N-BK7"),
 )
+POOL = scenes.SceneObject(
+    name="pool",
+    shape=scenes.HeightField(
+        position=(0.0, 0.0, 0.0), size=(1.0, 1.0), heights=((0.0, 0.1), (0.0, 0.1)), depth=0.2
+    ),
+    material=scenes.Dielectric(medium="water"),
+)
+"""Its surface rises from y = 0 to 0.1 along x."""
 BUBBLE = scenes.SceneObject(
     name="bubble", shape=scenes.Sphere(position=(0.0, 0.0, 0.0), radius=0.05),
     material=scenes.Dielectric(medium="air", priority=1),
@@ -45,6 +53,11 @@ BUBBLE = scenes.SceneObject(
         ((BALL,), level(0.0, side=0.5), ("N-BK7", "reference")),
         ((BALL, BUBBLE), level(0.0, side=0.05), ("air",)),
         ((BUBBLE, BALL), level(0.0, side=0.12), ("air", "N-BK7")),
+        ((POOL,), level(0.02), ("water",)),
+        ((POOL,), level(0.09), ("reference",)),
+        ((POOL,), level(0.049, side=0.9), ("water", "reference")),
+        ((POOL,), level(-0.3), ("reference",)),
+        ((POOL,), level(0.02, side=3.0), ("water", "reference")),
     ],
 )
 def test_the_media_have_names(objects, sensor, media):
