@@ -60,6 +60,9 @@ def measure(
 ) -> Measurement:
     """Measure what the sensors of `scene` receive; a camera is not needed, nor used.
 
+    Sensors count light on any way from a lamp, straight or through glass, and off as many diffuse
+    surfaces as the setting `bounces` says.
+
     Args:
         scene: with at least one sensor and one emitter.
         settings: what to spend; by default the scene's own settings. A target error is that of

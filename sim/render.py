@@ -36,21 +36,13 @@ from sim.launch import load_kernels
 from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
-from sim.photons.photon_batch import PhotonBatch
-from sim.photons.photon_map import (
-    INDIRECT_KEPT,
-    INDIRECT_WIDTH,
-    PhotonMap,
-    build_photon_map,
-    make_collect,
-    make_reorder,
-)
+from sim.photons.photon_map import make_collect, make_reorder
+from sim.photons.photon_maps import PhotonMaps, build_photon_maps
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
-from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 from sim.sensors.origin import Origin
 from sim.sensors.pass_crossings import PassCrossings
@@ -62,9 +54,6 @@ from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
 
 __all__ = ["compile_lamps_for", "gather_radius", "kernels_of", "radius_shrinkage", "render"]
-
-_THINNING_KEY = 0x7411
-"""Apart from every stream's number."""
 
 FOOTPRINTS_A_RADIUS = 2.0
 """The first pass gathers over a disc this many pixel widths in radius."""
@@ -185,15 +174,7 @@ def gather_radius(survey: Survey) -> float:
     return FOOTPRINTS_A_RADIUS * float(np.median(survey.widths))
 
 
-@dataclass(frozen=True)
-class _Maps:
-    """One pass's photons: those that no diffuse surface has reflected, and those that one has."""
-
-    straight: PhotonMap
-    bounced: PhotonMap | None
-
-
-_Pass = tuple[_Maps, EnergyBooks, PassCrossings | None]
+_Pass = tuple[PhotonMaps, EnergyBooks, PassCrossings | None]
 """One pass: its photons in maps, where its energy went, and what sensors have seen of it."""
 
 
@@ -229,7 +210,7 @@ class _Studio:
                 stop.set()
 
     def _photon_map(self, pass_index: int, stop: threading.Event) -> _Pass:
-        """Emit and trace the photons of one pass, and map them, one map for those that bounced."""
+        """Emit and trace the photons of one pass, and map them."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
                 self.compiled,
@@ -246,33 +227,21 @@ class _Studio:
             )
         radius = self.radius * radius_shrinkage(pass_index, self.plan.alpha)
         with self.watch.timing("build photon map"):
-            if not self.compiled.features.interreflection:
-                maps = _Maps(self._sorted(batch, radius, stop), None)
-                return maps, batch.books, batch.crossings
-            first = fold_key(self.plan.seed, pass_index, _THINNING_KEY) % INDIRECT_KEPT
-            straight, bounced = batch.parted(every=INDIRECT_KEPT, first=first)
-            maps = _Maps(
-                self._sorted(straight, radius, stop),
-                self._sorted(bounced, INDIRECT_WIDTH * radius, stop),
+            maps = build_photon_maps(
+                self.compiled, batch, self.receivers, radius, seed=self.plan.seed,
+                pass_index=pass_index, threads=self.plan.threads, stop=stop,
             )
         return maps, batch.books, batch.crossings
 
-    def _sorted(self, batch: PhotonBatch, radius: float, stop: threading.Event) -> PhotonMap:
-        """The map of a batch."""
-        return build_photon_map(
-            self.compiled, batch, self.receivers, radius, threads=self.plan.threads, stop=stop
-        )
-
-    def expose(self, film: Film, maps: _Maps, pass_index: int) -> None:
+    def expose(self, film: Film, maps: PhotonMaps, pass_index: int) -> None:
         """Expose the film to one pass."""
         self.watch.pass_index = pass_index
         lights = compose_lights(
             self.plan.precision,
-            maps.straight,
+            maps,
             self.receivers,
             self.lamps,
             direct=self.plan.direct_light == "lamps",
-            bounced=maps.bounced,
         )
         expose(
             film,
