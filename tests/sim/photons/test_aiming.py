@@ -23,7 +23,10 @@ def compiled(lamp, sensors):
     return compile_scene(scene, device=start_device("cpu"))
 
 
-def guided(lamp, sensors=(scenes.RaySensor(shape=DISK),)):
+SENSORS = (scenes.RaySensor(shape=DISK),)
+
+
+def guided(lamp, sensors=SENSORS):
     """Lamps with a guide that was made for a picture, and knows of the lamp's base alone."""
     scene = compiled(lamp, sensors)
     plain = plan_photons(compiled(lamp, ()), [(lamp, 1.0)], None, direct=True)
@@ -55,7 +58,7 @@ def test_without_sensors_a_guide_stays_as_it_is():
 
 
 def test_what_is_for_pictures_alone_does_not_aim_at_sensors():
-    scene = compiled(LAMP, (scenes.RaySensor(shape=DISK),))
+    scene = compiled(LAMP, SENSORS)
     for direct, kinds in ((True, [AIM_BASE, AIM_AREA]), (False, [AIM_BASE])):
         plan = plan_photons(scene, [(LAMP, 1.0)], None, direct=direct)
         assert [one.kind for one in plan.aims[0]] == [int(kind) for kind in kinds]
