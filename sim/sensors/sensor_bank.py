@@ -9,7 +9,7 @@ import numpy.typing as npt
 import scenes
 from sim.device_arrays import struct_array
 from sim.precision import precision_types
-from sim.scene_data import CompiledScene
+from sim.scene_data import CompiledScene, bounding_radius
 from sim.sensors.frames import sensor_frame, sensor_half
 from sim.sensors.sensor_structs import SENSOR_BINS, SENSOR_RAYS, make_sensor_structs
 
@@ -75,7 +75,7 @@ def _sensor_row(
     """The fields of a Sensor, in their order."""
     shape, half = sensor.shape, sensor_half(sensor)
     centre = compiled.to_local(shape.position)
-    reach = compiled.bounding_radius + float(np.linalg.norm(centre)) + float(np.hypot(*half))
+    reach = bounding_radius(compiled.scene, compiled.origin) + float(np.linalg.norm(centre)) + float(np.hypot(*half))
     eps = float(np.finfo(precision_types(compiled.precision).dtype).eps)
     radius2 = shape.radius**2 if isinstance(shape, scenes.Disk) else np.inf
     place = (centre, sensor_frame(sensor), *half, radius2, max(FLUSH, _ULPS * eps) * reach)
