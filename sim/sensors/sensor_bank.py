@@ -75,7 +75,8 @@ def _sensor_row(
     """The fields of a Sensor, in their order."""
     shape, half = sensor.shape, sensor_half(sensor)
     centre = compiled.to_local(shape.position)
-    reach = bounding_radius(compiled.scene, compiled.origin) + float(np.linalg.norm(centre)) + float(np.hypot(*half))
+    reach = bounding_radius(compiled.scene, compiled.origin)
+    reach += float(np.linalg.norm(centre)) + float(np.hypot(*half))
     eps = float(np.finfo(precision_types(compiled.precision).dtype).eps)
     radius2 = shape.radius**2 if isinstance(shape, scenes.Disk) else np.inf
     place = (centre, sensor_frame(sensor), *half, radius2, max(FLUSH, _ULPS * eps) * reach)
