@@ -1,6 +1,6 @@
 """Features: sensors that light crosses."""
 
-from sim.features.registry import Feature, Subject, Verdict, needed, null, register
+from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
 
 __all__: list[str] = []
 
@@ -17,4 +17,5 @@ register(Feature(
     what="light is counted, or its rays are kept, where it crosses a sensor",
     judge=_judge_sensors,
     flag="sensors",
+    cost=Cost(1.01, "prism"),
 ))  # fmt: skip
