@@ -44,6 +44,11 @@ from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
 from sim.scene_data import CompiledScene
+from sim.sensors.origin import Origin
+from sim.sensors.pass_crossings import PassCrossings
+from sim.sensors.readings import read_sensors
+from sim.sensors.sensor_bank import SensorBank, compile_sensors
+from sim.sensors.tally import SensorTally
 from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
@@ -95,24 +100,31 @@ def render(
             passes=plan.passes,
         )
         radius = plan.radius or gather_radius(survey)
-    studio = _Studio(compiled, lamps, receivers, camera, plan, radius, watch)
+        sensors = compile_sensors(compiled)
+    studio = _Studio(compiled, lamps, receivers, camera, sensors, plan, radius, watch)
+    tally = SensorTally(sensors) if sensors is not None else None
     books = []
     rule = StopRule(plan, watch)
     with closing(studio.photon_maps()) as photon_maps:
-        for pass_index, (maps, pass_books) in enumerate(photon_maps):
+        for pass_index, (maps, pass_books, crossings) in enumerate(photon_maps):
             books.append(pass_books)
+            if tally is not None and crossings is not None:
+                tally.add(crossings)
             with watch.timing("gather"):
                 studio.expose(film, maps, pass_index)
             if film.passes % film.turns == 0 and rule.ends_after(film):
                 break
+    energy, closed = EnergyBooks.mean(books), plan.closed(film.passes)
+    origin = Origin(scene=scene, settings=closed, energy=energy)
     return Picture(
         spectral_radiance=film.radiance(),
         standard_error=film.standard_error(),
         accuracy=film.accuracy(),
         edges_nm=edges_nm,
-        energy=EnergyBooks.mean(books),
+        energy=energy,
         scene=scene,
-        settings=plan.closed(film.passes),
+        settings=closed,
+        sensors=read_sensors(tally, origin) if tally is not None else {},
         stopping=rule.outcome,
         timings=watch.timings,
         features=choice.report(),
@@ -162,6 +174,10 @@ def gather_radius(survey: Survey) -> float:
     return FOOTPRINTS_A_RADIUS * float(np.median(survey.widths))
 
 
+_Pass = tuple[PhotonMaps, EnergyBooks, PassCrossings | None]
+"""One pass: its photons in maps, where its energy went, and what sensors have seen of it."""
+
+
 @dataclass(frozen=True)
 class _Studio:
     """All that the passes of one run share."""
@@ -170,12 +186,13 @@ class _Studio:
     lamps: Lamps
     receivers: Any
     camera: Any
+    sensors: SensorBank | None
     plan: ResolvedSettings
     radius: float
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[tuple[PhotonMaps, EnergyBooks], None, None]:
-        """The photon map of each pass, in order, and its energy books.
+    def photon_maps(self) -> Generator[_Pass, None, None]:
+        """Each pass, in order.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
         and would leave the other cores idle.
@@ -192,9 +209,7 @@ class _Studio:
             finally:
                 stop.set()
 
-    def _photon_map(
-        self, pass_index: int, stop: threading.Event
-    ) -> tuple[PhotonMaps, EnergyBooks]:
+    def _photon_map(self, pass_index: int, stop: threading.Event) -> _Pass:
         """Emit and trace the photons of one pass, and map them."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
@@ -205,6 +220,7 @@ class _Studio:
                 max_interactions=self.plan.max_interactions,
                 threads=self.plan.threads,
                 store_direct=self.plan.direct_light == "photons",
+                sensors=self.sensors,
                 bounces=self.plan.bounces,
                 stop=stop,
                 on_done=self.watch.count_photons,
@@ -215,7 +231,7 @@ class _Studio:
                 self.compiled, batch, self.receivers, radius, seed=self.plan.seed,
                 pass_index=pass_index, threads=self.plan.threads, stop=stop,
             )
-        return maps, batch.books
+        return maps, batch.books, batch.crossings
 
     def expose(self, film: Film, maps: PhotonMaps, pass_index: int) -> None:
         """Expose the film to one pass."""
