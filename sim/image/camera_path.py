@@ -80,7 +80,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
     scene_type, ray_type = transport.Scene, transport.Ray
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
-    look = make_camera_functions(precision)
+    look_through = make_camera_functions(precision, features).look_through
     gather = make_gather(precision, features)
 
     @wp.func
@@ -170,11 +170,13 @@ def make_render_camera(precision: str, features: Features) -> Any:
         turn = wp.uint32(film.turn)
         x, y = r2_point(key, turn, receivers.band_width_nm)
         inside_band = r1_point(key + wp.uint64(1), turn, receivers.band_width_nm)
-        ray = ray_type()
-        ray.origin = camera.position
-        ray.direction = look(
-            camera, real(pixel % camera.width) + x, real(pixel // camera.width) + y
+        u0, u1 = r2_point(key + wp.uint64(4), turn, receivers.band_width_nm)
+        origin, direction = look_through(
+            camera, real(pixel % camera.width) + x, real(pixel // camera.width) + y, u0, u1
         )
+        ray = ray_type()
+        ray.origin = origin
+        ray.direction = direction
         ray.prim = -1
         ray.face = -1
         sight = sight_type()

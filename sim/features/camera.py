@@ -1,0 +1,24 @@
+"""Features: what the camera does to light before it is a picture."""
+
+from sim.features.registry import Feature, Subject, Verdict, needed, null, register
+
+__all__: list[str] = []
+
+
+def _judge_lens(subject: Subject) -> Verdict:
+    """A pinhole sends every ray through one point: the lens' code would do the same."""
+    camera = subject.scene.camera
+    if camera is None:
+        return null("there is no camera")
+    if camera.lens_radius == 0.0:
+        return null("the camera is a pinhole")
+    return needed(f"the aperture's radius is {camera.lens_radius:.3g} m")
+
+
+register(Feature(
+    name="thin lens",
+    what="camera rays through all of an aperture: depth of field",
+    judge=_judge_lens,
+    flag="thin_lens",
+    kernel="camera",
+))  # fmt: skip
