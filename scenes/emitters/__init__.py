@@ -5,13 +5,14 @@ from typing import Annotated
 from pydantic import Field
 
 from scenes.emitters.beam import Beam, Profile, RoundProfile, SlitProfile
-from scenes.emitters.emitter import Emitter
+from scenes.emitters.emitter import Emitter, Glowing
 from scenes.emitters.lamps import Point, RectangleLamp, SphereLamp, Spot
 
 __all__ = [
     "AnyEmitter",
     "Beam",
     "Emitter",
+    "Glowing",
     "Point",
     "Profile",
     "RectangleLamp",

@@ -1,13 +1,13 @@
 """What all emitters have in common: a name, a total flux and a spectrum."""
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from scenes.emission import SpectrumSpec, resolve_spectrum
 from scenes.fields import Positive
 from scenes.model import SceneModel
 from spectra import EmissionSpectrum
 
-__all__ = ["Emitter"]
+__all__ = ["Emitter", "Glowing"]
 
 
 class Emitter(SceneModel):
@@ -22,3 +22,13 @@ class Emitter(SceneModel):
     def emission(self) -> EmissionSpectrum:
         """How the flux is spread over wavelengths, on a scale of its own."""
         return resolve_spectrum(self.spectrum)
+
+
+class Glowing(Emitter):
+    """A source of light with a surface, which can be looked at."""
+
+    visible: StrictBool = Field(
+        default=True,
+        description="whether the camera sees the lamp itself, directly, through glass and in"
+        " mirrors; it shines all the same",
+    )

@@ -1,10 +1,13 @@
-"""Lamps: light from a point, or from a surface that glows."""
+"""Lamps: light from a point, or from a surface that glows.
+
+A lamp is light without matter: its surface shines, and stops nothing.
+"""
 
 from typing import Literal
 
 from pydantic import Field
 
-from scenes.emitters.emitter import Emitter
+from scenes.emitters.emitter import Emitter, Glowing
 from scenes.fields import Degrees, Direction, Position, Size
 from scenes.shapes import FlatRectangle
 
@@ -29,7 +32,7 @@ class Spot(Emitter):
     )
 
 
-class SphereLamp(Emitter):
+class SphereLamp(Glowing):
     """A sphere that glows, equally bright from everywhere (Lambertian)."""
 
     type: Literal["sphere"] = Field(default="sphere", description="glowing sphere")
@@ -37,7 +40,7 @@ class SphereLamp(Emitter):
     radius: Size = Field(description="radius (length)")
 
 
-class RectangleLamp(FlatRectangle, Emitter):
+class RectangleLamp(FlatRectangle, Glowing):
     """A rectangle that glows (Lambertian) on the side its normal points to."""
 
     type: Literal["rectangle"] = Field(default="rectangle", description="glowing rectangle")

@@ -1,5 +1,6 @@
 """Features: what the camera does to light before it is a picture."""
 
+from scenes.emitters import Glowing
 from sim.features.registry import Feature, Subject, Verdict, needed, null, register
 
 __all__: list[str] = []
@@ -20,5 +21,20 @@ register(Feature(
     what="camera rays through all of an aperture: depth of field",
     judge=_judge_lens,
     flag="thin_lens",
+    kernel="camera",
+))  # fmt: skip
+
+
+def _judge_visible(subject: Subject) -> Verdict:
+    emitters = subject.scene.emitters
+    count = sum(isinstance(one, Glowing) and one.visible for one in emitters)
+    return needed(f"{count} lamps can be looked at") if count else null("no lamp can be looked at")
+
+
+register(Feature(
+    name="visible lamps",
+    what="camera paths see the lamps that they meet",
+    judge=_judge_visible,
+    flag="visible_lamps",
     kernel="camera",
 ))  # fmt: skip

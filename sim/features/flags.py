@@ -25,6 +25,7 @@ class Features:
         direct_light: shadow rays find what comes straight from the lamps.
         beams, sphere_lamps, rectangle_lamps: which extended lamps shadow rays can lead to.
         thin_lens: the camera has an aperture.
+        visible_lamps: camera paths can meet a lamp.
         media_count: how many media there are, the ambient one among them. A size, no feature.
         method: how light is followed. A choice of the caller's, no feature.
     """
@@ -46,5 +47,6 @@ class Features:
     sphere_lamps: bool = True
     rectangle_lamps: bool = True
     thin_lens: bool = True
+    visible_lamps: bool = True
     media_count: int = 1
     method: Method = DEFAULT_METHOD

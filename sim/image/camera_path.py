@@ -27,6 +27,7 @@ from sim.features import Features
 from sim.image.camera import make_camera_functions, make_camera_struct
 from sim.image.gather import make_gather
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
+from sim.image.visible_lamps import make_see_lamps
 from sim.sampling.counter import hash64
 from sim.sampling.kronecker import r1_point, r2_point
 from sim.sampling.roulette import choose_branches
@@ -82,6 +83,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
     look_through = make_camera_functions(precision, features).look_through
     gather = make_gather(precision, features)
+    see_lamps = make_see_lamps(precision, features)
 
     @wp.func
     def follow(
@@ -119,6 +121,10 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 dispersed = stack_dispersed[depth]
                 alive = bool(True)
             met = interact(scene, ray, indices)
+            if wp.static(features.visible_lamps):
+                if sight.band == ALL_BANDS or dispersed == 1:
+                    scale = throughput / lights.receivers.band_width_nm
+                    see_lamps(lights, ray, met.t, sight, scale, sample)
             if met.event == EVENT_BOUNDARY:
                 if met.dispersive == 1:
                     met_dispersive = 1

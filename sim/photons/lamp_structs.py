@@ -53,8 +53,10 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         half_v: real
         radius: real
         sin2_half: real  # sin² of half the cone's half angle
+        visible: int
         widening: real  # of a beam, per length: the tangent of its half angle
         flux: real
+        radiance: real  # of its surface, where it has one
         first_target: int
         target_count: int
         first_segment: int

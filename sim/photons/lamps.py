@@ -9,19 +9,12 @@ import warp as wp
 
 import scenes
 from sim.photons.aiming import Aim, Guide, View, plan_photons
-from sim.photons.lamp_structs import (
-    AIM_CELLS,
-    BEAM,
-    POINT,
-    RECTANGLE_LAMP,
-    SPHERE_LAMP,
-    SPOT,
-    make_lamp_structs,
-)
+from sim.photons.emitter_rows import emitter_row
+from sim.photons.lamp_structs import AIM_CELLS, make_lamp_structs
 from sim.precision import precision_types
 from sim.sampling.counter import seed_words
 from sim.sampling.sobol import DIMENSIONS, sobol_tables
-from sim.scene_data import CompiledScene, axis_frame, struct_array
+from sim.scene_data import CompiledScene, struct_array
 from spectra import EmissionSpectrum
 
 __all__ = ["Lamps", "Stream", "compile_lamps"]
@@ -91,7 +84,7 @@ def compile_lamps(
     counts = _share(photons, list(guide.shares))
     tables = _Tables()
     for (emitter, spectrum, flux), aims, count in zip(shining, guide.aims, counts, strict=True):
-        tables.add(_emitter_row(compiled, emitter), spectrum, flux, aims, count)
+        tables.add(emitter_row(compiled, emitter, flux), spectrum, aims, count)
     flux = sum(flux for _, _, flux in shining)
     spectra = tuple(spectrum for _, spectrum, _ in shining)
     return Lamps(tables.on_device(compiled), tuple(tables.streams), flux, spectra, guide.aims)
@@ -101,7 +94,7 @@ class _Tables:
     """Rows of the device's arrays as they grow, lamp by lamp, and the streams they make."""
 
     def __init__(self) -> None:
-        self.emitters: list[tuple[Any, ...]] = []
+        self.emitters: list[dict[str, Any]] = []
         self.targets: list[tuple[Any, ...]] = []
         self.segments: list[tuple[Any, ...]] = []
         self.streams: list[Stream] = []
@@ -109,16 +102,19 @@ class _Tables:
 
     def add(
         self,
-        geometry: tuple[Any, ...],
+        emitter: dict[str, Any],
         spectrum: EmissionSpectrum,
-        flux: float,
         aims: tuple[Aim, ...],
         photons: int,
     ) -> None:
         """Add a lamp with its spectrum and its aims, among which `photons` are shared out."""
         pieces, shares = _segments(spectrum)
-        counts = (len(self.targets), len(aims), len(self.segments), len(pieces))
-        self.emitters.append((*geometry, flux, *counts, self._add_distribution(shares)))
+        self.emitters.append({
+            **emitter,
+            "first_target": len(self.targets), "target_count": len(aims),
+            "first_segment": len(self.segments), "segment_count": len(pieces),
+            "first_cdf": self._add_distribution(shares),
+        })  # fmt: skip
         self.segments.extend(pieces)
         for aim, count in zip(aims, _share(photons, [a.share for a in aims]), strict=True):
             self.streams.append(Stream(len(self.emitters) - 1, len(self.targets), count))
@@ -138,7 +134,9 @@ class _Tables:
         structs, device = make_lamp_structs(compiled.precision), compiled.device
         types = precision_types(compiled.precision)
         data = structs.Lamps()
-        data.emitters = struct_array(structs.Emitter, self.emitters, device)
+        fields = structs.Emitter.numpy_dtype()["names"]
+        rows = [tuple(one[name] for name in fields) for one in self.emitters]
+        data.emitters = struct_array(structs.Emitter, rows, device)
         data.targets = struct_array(structs.Target, self.targets, device)
         data.segments = struct_array(structs.Segment, self.segments, device)
         data.sobol = wp.array(sobol_tables(), dtype=wp.uint32, device=device)
@@ -211,28 +209,3 @@ def _guide(cdf: FloatArray) -> npt.NDArray[np.int32]:
     cells = len(cdf) - 1
     found = np.searchsorted(cdf[1:], np.arange(cells + 1) / cells, side="right")
     return np.minimum(found, cells - 1).astype(np.int32)
-
-
-def _emitter_row(compiled: CompiledScene, emitter: Any) -> tuple[Any, ...]:
-    """The geometric fields of an Emitter: kind to widening."""
-    centre = compiled.to_local(emitter.position)
-    frame = np.eye(3)
-    if isinstance(emitter, scenes.Beam):
-        frame = np.stack(emitter.frame())
-        sin2_half = np.sin(0.5 * np.radians(emitter.divergence_deg)) ** 2
-        widening = np.tan(np.radians(emitter.divergence_deg))
-        if isinstance(emitter.profile, scenes.RoundProfile):
-            radius = emitter.profile.radius
-            return int(BEAM), 1, centre, frame, radius, radius, radius, sin2_half, widening
-        half_u, half_v = 0.5 * emitter.profile.width, 0.5 * emitter.profile.height
-        return int(BEAM), 0, centre, frame, half_u, half_v, 0.0, sin2_half, widening
-    if isinstance(emitter, scenes.Point):
-        return int(POINT), 0, centre, frame, 0.0, 0.0, 0.0, 1.0, 0.0
-    if isinstance(emitter, scenes.Spot):
-        sin2_half = np.sin(0.5 * np.radians(emitter.half_angle_deg)) ** 2
-        return int(SPOT), 0, centre, axis_frame(emitter.direction), 0.0, 0.0, 0.0, sin2_half, 0.0
-    if isinstance(emitter, scenes.SphereLamp):
-        return int(SPHERE_LAMP), 0, centre, frame, 0.0, 0.0, emitter.radius, 1.0, 0.0
-    frame = np.stack(emitter.frame())
-    half_u, half_v = 0.5 * emitter.size[0], 0.5 * emitter.size[1]
-    return int(RECTANGLE_LAMP), 0, centre, frame, half_u, half_v, 0.0, 1.0, 0.0
