@@ -11,7 +11,17 @@ wavelengths in nanometres (`…_nm`) and angles in degrees (`…_deg`); files ma
 
 from scenes.camera import Camera
 from scenes.emission import Blackbody, Laser, Lines, SpectrumTable
-from scenes.emitters import Beam, Point, RectangleLamp, RoundProfile, SlitProfile, SphereLamp, Spot
+from scenes.emitters import (
+    Beam,
+    Environment,
+    Point,
+    RectangleLamp,
+    RoundProfile,
+    SlitProfile,
+    SphereLamp,
+    Spot,
+    Sun,
+)
 from scenes.errors import Problem, SceneError
 from scenes.files import gallery, gallery_path, load, loads, schema
 from scenes.film import Film
@@ -42,6 +52,7 @@ __all__ = [
     "ConstantMedium",
     "Dielectric",
     "Disk",
+    "Environment",
     "Film",
     "Lambertian",
     "Laser",
@@ -67,6 +78,7 @@ __all__ = [
     "Sphere",
     "SphereLamp",
     "Spot",
+    "Sun",
     "TableMedium",
     "gallery",
     "gallery_path",

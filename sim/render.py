@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 import scenes
+from scenes.emitters import DistantEmitter
 from sim.canary import choose_kernels
 from sim.device import start_device
 from sim.errors import SettingsError
@@ -125,21 +126,36 @@ def kernels_of(precision: str, features: Features) -> list[Any]:
         *(make(precision, features) for make in special),
         make_collect(precision),
         make_reorder(precision),
-        make_retrace_emission(precision, features.method.sampler),
+        make_retrace_emission(precision, features),
     ]
 
 
 def compile_lamps_for(
     compiled: CompiledScene, survey: Survey, plan: ResolvedSettings
 ) -> Lamps:
-    """The lamps, with photons for what they have to show: all light, or what has met glass."""
+    """The lamps, with photons for what they have to show: all light, or what has met glass.
+
+    Raises:
+        SettingsError: there would have to be photons without end.
+    """
     edges_nm = np.asarray(compiled.scene.film.edges_nm, dtype=np.float64)
+    if plan.direct_light == "photons":
+        _refuse_endless_light(compiled.scene)
     if plan.direct_light == "photons":
         return compile_lamps(compiled, edges_nm, plan.photons, view=survey)
     return compile_guided_lamps(
         compiled, edges_nm, plan.photons, view=survey, seed=plan.seed,
         max_interactions=plan.max_interactions, threads=plan.threads,
     )
+
+
+def _refuse_endless_light(scene: scenes.Scene) -> None:
+    """Photons from afar come to a sphere around the scene, an endless plane lies beyond it too."""
+    distant = [one.name for one in scene.emitters if isinstance(one, DistantEmitter)]
+    endless = [one.name for one in scene.objects if isinstance(one.shape, scenes.Plane)]
+    if distant and endless:
+        allowed = f'"lamps", for {distant[0]} is infinitely far away, and {endless[0]} has no end'
+        raise SettingsError("direct_light", "photons", allowed)
 
 
 def radius_shrinkage(pass_index: int, alpha: float) -> float:

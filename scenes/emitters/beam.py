@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from scenes.emitters.emitter import Emitter
+from scenes.emitters.emitter import LocalEmitter
 from scenes.errors import Problem, refusal
 from scenes.fields import Degrees, Direction, Position, Size
 from scenes.frames import Frame, frame_about
@@ -37,7 +37,7 @@ Profile = Annotated[RoundProfile | SlitProfile, Field(discriminator="type")]
 """The cross-section of a beam where it starts."""
 
 
-class Beam(Emitter):
+class Beam(LocalEmitter):
     """A beam that starts from a profile perpendicular to its direction."""
 
     type: Literal["beam"] = Field(default="beam", description="collimated beam")

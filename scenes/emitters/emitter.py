@@ -1,4 +1,4 @@
-"""What all emitters have in common: a name, a total flux and a spectrum."""
+"""What emitters have in common: a name and a spectrum, a flux, a surface that can be seen."""
 
 from pydantic import Field, StrictBool
 
@@ -7,7 +7,7 @@ from scenes.fields import Positive
 from scenes.model import SceneModel
 from spectra import EmissionSpectrum
 
-__all__ = ["Emitter", "Glowing"]
+__all__ = ["Emitter", "Glowing", "LocalEmitter"]
 
 
 class Emitter(SceneModel):
@@ -16,7 +16,6 @@ class Emitter(SceneModel):
     name: str = Field(
         default="", description='name in messages, unique; "emitters[i]" if not given'
     )
-    flux: Positive = Field(description="radiant flux over the whole spectrum [W]")
     spectrum: SpectrumSpec = Field(description="name of a spectrum, or a table that describes one")
 
     def emission(self) -> EmissionSpectrum:
@@ -24,8 +23,14 @@ class Emitter(SceneModel):
         return resolve_spectrum(self.spectrum)
 
 
-class Glowing(Emitter):
-    """A source of light with a surface, which can be looked at."""
+class LocalEmitter(Emitter):
+    """A source of light that is somewhere in the scene."""
+
+    flux: Positive = Field(description="radiant flux over the whole spectrum [W]")
+
+
+class Glowing(SceneModel):
+    """Something that shines, and can be looked at."""
 
     visible: StrictBool = Field(
         default=True,

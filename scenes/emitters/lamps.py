@@ -7,21 +7,21 @@ from typing import Literal
 
 from pydantic import Field
 
-from scenes.emitters.emitter import Emitter, Glowing
+from scenes.emitters.emitter import Glowing, LocalEmitter
 from scenes.fields import Degrees, Direction, Position, Size
 from scenes.shapes import FlatRectangle
 
 __all__ = ["Point", "RectangleLamp", "SphereLamp", "Spot"]
 
 
-class Point(Emitter):
+class Point(LocalEmitter):
     """A point that shines evenly in all directions."""
 
     type: Literal["point"] = Field(default="point", description="point source")
     position: Position = Field(description="where it is (length)")
 
 
-class Spot(Emitter):
+class Spot(LocalEmitter):
     """A point that shines evenly into a cone."""
 
     type: Literal["spot"] = Field(default="spot", description="point source with a cone")
@@ -32,7 +32,7 @@ class Spot(Emitter):
     )
 
 
-class SphereLamp(Glowing):
+class SphereLamp(LocalEmitter, Glowing):
     """A sphere that glows, equally bright from everywhere (Lambertian)."""
 
     type: Literal["sphere"] = Field(default="sphere", description="glowing sphere")
@@ -40,7 +40,7 @@ class SphereLamp(Glowing):
     radius: Size = Field(description="radius (length)")
 
 
-class RectangleLamp(FlatRectangle, Glowing):
+class RectangleLamp(FlatRectangle, LocalEmitter, Glowing):
     """A rectangle that glows (Lambertian) on the side its normal points to."""
 
     type: Literal["rectangle"] = Field(default="rectangle", description="glowing rectangle")

@@ -24,6 +24,7 @@ class Features:
         undispersed_photons: photons that no dispersion has touched can be in the map.
         direct_light: shadow rays find what comes straight from the lamps.
         beams, sphere_lamps, rectangle_lamps: which extended lamps shadow rays can lead to.
+        distant_lamps: some light comes from infinitely far away.
         thin_lens: the camera has an aperture.
         visible_lamps: camera paths can meet a lamp.
         media_count: how many media there are, the ambient one among them. A size, no feature.
@@ -46,6 +47,7 @@ class Features:
     beams: bool = True
     sphere_lamps: bool = True
     rectangle_lamps: bool = True
+    distant_lamps: bool = True
     thin_lens: bool = True
     visible_lamps: bool = True
     media_count: int = 1

@@ -23,6 +23,7 @@ from sim.image.sight import make_sight_struct
 from sim.photons.densities import make_density_functions
 from sim.photons.lamp_structs import (
     BEAM,
+    DISTANT,
     POINT,
     RECTANGLE_LAMP,
     SPHERE_LAMP,
@@ -30,7 +31,13 @@ from sim.photons.lamp_structs import (
     make_lamp_structs,
 )
 from sim.sampling.counter import hash64
-from sim.sampling.directions import cone_solid_angle, sample_cone, sample_disk, to_world
+from sim.sampling.directions import (
+    cone_solid_angle,
+    sample_cone,
+    sample_cosine_hemisphere,
+    sample_disk,
+    to_world,
+)
 from sim.sampling.kronecker import r2_point
 from sim.scene_structs import make_scene_structs
 from sim.transport import make_transport
@@ -39,6 +46,9 @@ __all__ = ["make_direct_light"]
 
 CLEARANCE = 1.0 - 1e-6
 """A shadow ray ends this part of its way to the lamp, so that what the lamp lies on is no shade."""
+
+ENVIRONMENT_RAYS = wp.constant(4)
+"""Shadow rays to light from all around, for one to a lamp."""
 
 PI = wp.constant(3.141592653589793)
 
@@ -168,6 +178,30 @@ def make_connection(precision: str, features: Features) -> object:
 
 
 @functools.cache
+def make_distant_connection(precision: str) -> object:
+    """Device function `connect_distant(emitter, normal, u0, u1)`.
+
+    It returns the direction in which light comes from afar, and the irradiance that it gives a
+    surface of this normal: an estimate whose mean over (u0, u1) is exact.
+    """
+    structs = make_lamp_structs(precision)
+    real, vec3, emitter_type = structs.real, structs.vec3, structs.Emitter
+
+    @wp.func
+    def connect_distant(emitter: emitter_type, normal: vec3, u0: real, u1: real):
+        if emitter.sin2_half >= real(1.0):
+            # From all around: as densely as the cosine has it, E = π L.
+            x, y, z = sample_cosine_hemisphere(u0, u1)
+            return -to_world(x, y, z, normal), real(PI) * emitter.radiance
+        x, y, z = sample_cone(u0, u1, emitter.sin2_half)
+        way = to_world(x, y, z, emitter.frame[2])
+        full = emitter.radiance * cone_solid_angle(emitter.sin2_half)
+        return way, -wp.dot(way, normal) * full
+
+    return connect_distant
+
+
+@functools.cache
 def make_direct_light(precision: str, features: Features) -> object:
     """Device function `direct_irradiance(scene, lamps, row, met, sight)` [W m⁻²].
 
@@ -179,6 +213,7 @@ def make_direct_light(precision: str, features: Features) -> object:
     ray_type, lamps_type = structs.Ray, lamp_structs.Lamps
     sight_type = make_sight_struct(precision)
     connect = make_connection(precision, features)
+    connect_distant = make_distant_connection(precision)
     intersect = make_transport(precision, features).intersect
 
     @wp.func
@@ -190,6 +225,9 @@ def make_direct_light(precision: str, features: Features) -> object:
         rays = int(sight.shadow_rays)
         if emitter.kind == POINT or emitter.kind == SPOT:
             rays = int(1)
+        if wp.static(features.distant_lamps):
+            if emitter.kind == DISTANT and emitter.sin2_half >= real(1.0):
+                rays *= ENVIRONMENT_RAYS
         total = real(0.0)
         k = int(0)
         while k < rays:
@@ -197,6 +235,10 @@ def make_direct_light(precision: str, features: Features) -> object:
             u0, u1 = r2_point(key, index, total)
             way, distance, irradiance = connect(emitter, met.point, u0, u1)
             irradiance *= -wp.dot(way, met.normal)
+            if wp.static(features.distant_lamps):
+                if emitter.kind == DISTANT:
+                    way, irradiance = connect_distant(emitter, met.normal, u0, u1)
+                    distance = real(wp.inf)
             if irradiance > real(0.0):
                 ray = ray_type()
                 ray.origin = met.point

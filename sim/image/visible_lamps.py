@@ -16,7 +16,7 @@ import warp as wp
 
 from sim.features import Features
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
-from sim.photons.lamp_structs import RECTANGLE_LAMP, SPHERE_LAMP, make_lamp_structs
+from sim.photons.lamp_structs import DISTANT, RECTANGLE_LAMP, SPHERE_LAMP, make_lamp_structs
 from sim.scene_structs import make_ray_structs
 
 __all__ = ["make_see_lamps"]
@@ -26,7 +26,7 @@ CLEARANCE = 1.0 - 1e-6
 
 
 @functools.cache
-def make_lamp_radiance(precision: str) -> object:
+def make_lamp_radiance(precision: str, *, distant: bool) -> object:
     """Device function `lamp_radiance(emitter, ray, t)` [W m⁻² sr⁻¹].
 
     What the lamp adds, over its whole spectrum, to what is seen along the first `t` metres.
@@ -62,6 +62,14 @@ def make_lamp_radiance(precision: str) -> object:
         return wp.abs(local[0]) <= emitter.half_u and wp.abs(local[1]) <= emitter.half_v
 
     @wp.func
+    def meets_distant(emitter: emitter_type, ray: ray_type, t: real):
+        """Whether the ray escapes to where the light comes from."""
+        chord = ray.direction + emitter.frame[2]
+        inside = emitter.sin2_half >= real(1.0)
+        inside = inside or wp.dot(chord, chord) <= real(4.0) * emitter.sin2_half
+        return inside and t == real(wp.inf)
+
+    @wp.func
     def lamp_radiance(emitter: emitter_type, ray: ray_type, t: real):
         seen = bool(False)
         if emitter.visible == 1:
@@ -69,6 +77,9 @@ def make_lamp_radiance(precision: str) -> object:
                 seen = meets_sphere(emitter, ray, t)
             if emitter.kind == RECTANGLE_LAMP:
                 seen = meets_rectangle(emitter, ray, t)
+            if wp.static(distant):
+                if emitter.kind == DISTANT:
+                    seen = meets_distant(emitter, ray, t)
         if seen:
             return emitter.radiance
         return real(0.0)
@@ -86,7 +97,7 @@ def make_see_lamps(precision: str, features: Features) -> object:
     real = make_lamp_structs(precision).real
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     ray_type = make_ray_structs(precision).Ray
-    lamp_radiance = make_lamp_radiance(precision)
+    lamp_radiance = make_lamp_radiance(precision, distant=features.distant_lamps)
 
     @wp.func
     def see_lamps(

@@ -20,11 +20,15 @@ import functools
 
 import warp as wp
 
-from sim.photons.densities import make_cell_functions, make_density_functions
+from sim.features import Features
+from sim.photons.cells import make_cell_functions
+from sim.photons.densities import make_density_functions
+from sim.photons.distant import make_distant_functions
 from sim.photons.lamp_structs import (
     AIM_AREA,
     AIM_CONE,
     BEAM,
+    DISTANT,
     RECTANGLE_LAMP,
     SPHERE_LAMP,
     SPOT,
@@ -41,6 +45,8 @@ from sim.sampling.photon_numbers import make_photon_numbers
 from sim.scene_structs import make_ray_structs
 
 __all__ = ["make_emission", "make_wavelength_function"]
+
+EVERYTHING = Features()
 
 
 @functools.cache
@@ -69,12 +75,12 @@ def make_wavelength_function(precision: str) -> object:
 
 
 @functools.cache
-def make_direction_function(precision: str) -> object:
+def make_direction_function(precision: str, *, distant: bool) -> object:
     """Device function `sample_direction(emitter, target, origin, u0, u1)`, unit."""
     structs = make_lamp_structs(precision)
     real, vec3 = structs.real, structs.vec3
     emitter_type, target_type = structs.Emitter, structs.Target
-    densities = make_density_functions(precision)
+    densities = make_density_functions(precision, distant=distant)
     cone_of, cone_axis = densities.cone_of, densities.cone_axis
 
     @wp.func
@@ -101,7 +107,7 @@ def make_direction_function(precision: str) -> object:
 
 
 @functools.cache
-def make_line_function(precision: str) -> object:
+def make_line_function(precision: str, *, distant: bool) -> object:
     """Device function `sample_line(emitter, target, u0, u1, u3, u4)`: (origin, direction).
 
     The first two numbers choose what is aimed at, the last two the point of the lamp. Points of
@@ -110,7 +116,8 @@ def make_line_function(precision: str) -> object:
     structs = make_lamp_structs(precision)
     real, vec3 = structs.real, structs.vec3
     emitter_type, target_type = structs.Emitter, structs.Target
-    sample_direction = make_direction_function(precision)
+    sample_direction = make_direction_function(precision, distant=distant)
+    sample_distant = make_distant_functions(precision).sample_distant
 
     @wp.func
     def point_of_sphere(emitter: emitter_type, way: vec3, u3: real, u4: real):
@@ -123,6 +130,9 @@ def make_line_function(precision: str) -> object:
     def sample_line(
         emitter: emitter_type, target: target_type, u0: real, u1: real, u3: real, u4: real
     ):
+        if wp.static(distant):
+            if emitter.kind == DISTANT:
+                return sample_distant(emitter, target, u0, u1, u3, u4)
         origin = emitter.centre
         if emitter.kind == RECTANGLE_LAMP:
             origin += emitter.frame[0] * ((u3 + u3 - real(1.0)) * emitter.half_u)
@@ -145,12 +155,12 @@ def make_line_function(precision: str) -> object:
 
 
 @functools.cache
-def make_emission(precision: str, sampler: str = "sobol") -> object:
+def make_emission(precision: str, features: Features = EVERYTHING) -> object:
     """Device function `emit(lamps, emitter, target, seed_row, index, key)`.
 
     Args:
         precision: of rays and fluxes.
-        sampler: what photons are drawn from, see `sim.method`.
+        features: which lamps there may be, and what photons are drawn from.
 
     Returns:
         The function, which returns (Ray, u, flux [W]) of photon `index` of the sequence that
@@ -159,13 +169,14 @@ def make_emission(precision: str, sampler: str = "sobol") -> object:
     structs = make_lamp_structs(precision)
     real, lamps_type = structs.real, structs.Lamps
     ray_type = make_ray_structs(precision).Ray
-    densities = make_density_functions(precision)
+    distant = features.distant_lamps
+    densities = make_density_functions(precision, distant=distant)
     own_density, target_density = densities.own_density, densities.target_density
-    sample_direction = make_direction_function(precision)
-    sample_line = make_line_function(precision)
+    sample_direction = make_direction_function(precision, distant=distant)
+    sample_line = make_line_function(precision, distant=distant)
     cells = make_cell_functions(precision)
     invert_square, cell_density = cells.invert_square, cells.cell_density
-    photon_numbers = make_photon_numbers(precision, sampler)
+    photon_numbers = make_photon_numbers(precision, features.method.sampler)
 
     @wp.func
     def emit(

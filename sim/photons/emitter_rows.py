@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 import scenes
-from sim.photons.lamp_structs import BEAM, POINT, RECTANGLE_LAMP, SPHERE_LAMP, SPOT
+from scenes.emitters import DistantEmitter
+from sim.photons.lamp_structs import BEAM, DISTANT, POINT, RECTANGLE_LAMP, SPHERE_LAMP, SPOT
 from sim.scene_data import CompiledScene, axis_frame
 
 __all__ = ["emitter_row"]
@@ -24,6 +25,8 @@ def emitter_row(compiled: CompiledScene, emitter: Any, flux: float) -> dict[str,
         "half_u": 0.0, "half_v": 0.0, "radius": 0.0, "sin2_half": 1.0, "widening": 0.0,
         "visible": 0, "flux": flux, "radiance": 0.0,
     }  # fmt: skip
+    if isinstance(emitter, DistantEmitter):
+        return row | _distant(emitter, compiled.bounding_radius, flux)
     row |= {"centre": compiled.to_local(emitter.position)}
     if isinstance(emitter, scenes.Beam):
         row |= _beam(emitter)
@@ -51,6 +54,13 @@ def _beam(beam: scenes.Beam) -> dict[str, Any]:
         radius = beam.profile.radius
         return row | {"round": 1, "half_u": radius, "half_v": radius, "radius": radius}
     return row | {"half_u": 0.5 * beam.profile.width, "half_v": 0.5 * beam.profile.height}
+
+
+def _distant(emitter: DistantEmitter, radius: float, flux: float) -> dict[str, Any]:
+    row: dict[str, Any] = {"kind": int(DISTANT), "frame": axis_frame(emitter.axis)}
+    row |= {"radius": radius, "sin2_half": _sin2_half(emitter.cone_deg)}
+    row |= {"visible": int(emitter.visible)}
+    return row | {"radiance": flux / emitter.flux_through(radius) * emitter.full_radiance}
 
 
 def _sin2_half(angle_deg: float) -> float:

@@ -8,6 +8,7 @@ import numpy.typing as npt
 import warp as wp
 
 import scenes
+from scenes.emitters import DistantEmitter
 from sim.photons.aiming import Aim, Guide, View, plan_photons
 from sim.photons.emitter_rows import emitter_row
 from sim.photons.lamp_structs import AIM_CELLS, make_lamp_structs
@@ -38,7 +39,8 @@ class Lamps:
     Attributes:
         data: the device-side Lamps struct.
         streams: what one pass emits; their photon counts add up to the pass's photons.
-        flux: radiant flux inside the film's wavelengths, all lamps together [W].
+        flux: radiant flux inside the film's wavelengths, all lamps together [W]; of distant lamps
+            what comes through a sphere around the scene.
         spectra: of each emitter on the device, inside the film's wavelengths.
         aims: of each emitter on the device, what its streams are aimed at.
     """
@@ -77,7 +79,7 @@ def compile_lamps(
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.
     """
-    shining = _find_shining(compiled.scene, edges_nm)
+    shining = _find_shining(compiled, edges_nm)
     if guide is None:
         emitters = [(emitter, flux) for emitter, _, flux in shining]
         guide = plan_photons(compiled, emitters, view, direct=direct)
@@ -148,23 +150,23 @@ class _Tables:
 
 
 def _find_shining(
-    scene: scenes.Scene, edges_nm: FloatArray
+    compiled: CompiledScene, edges_nm: FloatArray
 ) -> list[tuple[Any, EmissionSpectrum, float]]:
     """The emitters that shine inside the film's range, each with what it gives there."""
     shining = [
         (emitter, *part)
-        for emitter in scene.emitters
-        if (part := _film_part(emitter, edges_nm)) is not None
+        for emitter in compiled.scene.emitters
+        if (part := _film_part(compiled, emitter, edges_nm)) is not None
     ]
     if not shining:
         allowed = f"an emitter that shines between {edges_nm[0]:g} and {edges_nm[-1]:g} nm"
         problem = scenes.Problem("emitters", f"none gives light; it needs {allowed}", None, allowed)
-        raise scenes.SceneError(scene.source_name, [problem])
+        raise scenes.SceneError(compiled.scene.source_name, [problem])
     return shining
 
 
 def _film_part(
-    emitter: Any, edges_nm: FloatArray
+    compiled: CompiledScene, emitter: Any, edges_nm: FloatArray
 ) -> tuple[EmissionSpectrum, float] | None:
     """The emitter's spectrum inside the film's range and the flux it has there [W], if any."""
     spectrum = emitter.emission()
@@ -172,7 +174,12 @@ def _film_part(
     inside = float(np.sum(spectrum.band_flux(np.array([low, high]))))
     if inside <= 0.0:
         return None
-    return spectrum.restricted(low, high), emitter.flux * inside / spectrum.total
+    flux = (
+        emitter.flux_through(compiled.bounding_radius)
+        if isinstance(emitter, DistantEmitter)
+        else emitter.flux
+    )
+    return spectrum.restricted(low, high), flux * inside / spectrum.total
 
 
 def _share(total: int, weights: list[float]) -> list[int]:

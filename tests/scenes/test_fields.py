@@ -96,6 +96,15 @@ flux = 2
 spectrum = "D65"
 position = [1, 2, 3]
 size = [4, 5]
+[[emitters]]
+type = "sun"
+direction = [1, 0, 0]
+irradiance = 2
+spectrum = "D65"
+[[emitters]]
+type = "environment"
+radiance = 2
+spectrum = "D65"
 """
 
 LENGTHS = {
