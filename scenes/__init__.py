@@ -9,6 +9,15 @@ wavelengths in nanometres (`…_nm`) and angles in degrees (`…_deg`); files ma
     60.0
 """
 
+from scenes.absorption import (
+    CoefficientTable,
+    DecadicAbsorption,
+    ExtinctionAbsorption,
+    ExtinctionTable,
+    InternalTransmittance,
+    NapierianAbsorption,
+    TransmittanceTable,
+)
 from scenes.camera import Camera
 from scenes.emission import Blackbody, Laser, Lines, SpectrumTable
 from scenes.emitters import (
@@ -26,9 +35,11 @@ from scenes.errors import Problem, SceneError
 from scenes.files import gallery, gallery_path, load, loads, schema
 from scenes.film import Film
 from scenes.frames import rotation_matrix
-from scenes.materials import Absorber, Dielectric, Lambertian, ReflectanceTable
+from scenes.materials import Absorber, Dielectric, Lambertian, Metal, Mirror, is_specular
 from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMedium
+from scenes.metals import MetalTable
 from scenes.objects import SceneObject
+from scenes.reflectance import ReflectanceTable
 from scenes.scene import RenderDefaults, Scene
 from scenes.shapes import (
     Box,
@@ -49,16 +60,25 @@ __all__ = [
     "Box",
     "Camera",
     "CauchyMedium",
+    "CoefficientTable",
     "ConstantMedium",
+    "DecadicAbsorption",
     "Dielectric",
     "Disk",
     "Environment",
+    "ExtinctionAbsorption",
+    "ExtinctionTable",
     "Film",
+    "InternalTransmittance",
     "Lambertian",
     "Laser",
     "Lens",
     "LensSurface",
     "Lines",
+    "Metal",
+    "MetalTable",
+    "Mirror",
+    "NapierianAbsorption",
     "Plane",
     "Point",
     "Polyhedron",
@@ -80,8 +100,10 @@ __all__ = [
     "Spot",
     "Sun",
     "TableMedium",
+    "TransmittanceTable",
     "gallery",
     "gallery_path",
+    "is_specular",
     "load",
     "loads",
     "rotation_matrix",

@@ -7,10 +7,15 @@ Conventions: wavelengths are nanometres (``wavelength_nm``) in air or in vacuum 
 ``relative_to`` says; everything else is SI.
 """
 
+from spectra.absorption import Absorption
+from spectra.absorption_tables import absorbing_media, published_absorption
+from spectra.conductors import Conductor, conductor, conductors
 from spectra.dispersion import Cauchy, Dispersion, Sellmeier, Tabulated, air_index
 from spectra.emission import EmissionSpectrum
 from spectra.errors import (
     SpectraError,
+    UnknownAbsorption,
+    UnknownConductor,
     UnknownGlass,
     UnknownName,
     UnknownObserver,
@@ -39,7 +44,9 @@ from spectra.units import VISIBLE_RANGE_NM
 
 __all__ = [
     "VISIBLE_RANGE_NM",
+    "Absorption",
     "Cauchy",
+    "Conductor",
     "Dispersion",
     "EmissionSpectrum",
     "Medium",
@@ -47,14 +54,19 @@ __all__ = [
     "Sellmeier",
     "SpectraError",
     "Tabulated",
+    "UnknownAbsorption",
+    "UnknownConductor",
     "UnknownGlass",
     "UnknownName",
     "UnknownObserver",
     "UnknownSpectrum",
     "WavelengthOutOfRange",
+    "absorbing_media",
     "air_index",
     "blackbody",
     "cie_illuminant",
+    "conductor",
+    "conductors",
     "encode_srgb",
     "glass",
     "glasses",
@@ -63,6 +75,7 @@ __all__ = [
     "luminance",
     "map_to_gamut",
     "observer",
+    "published_absorption",
     "spectrum",
     "spectrum_names",
     "table",

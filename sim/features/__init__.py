@@ -8,6 +8,7 @@ import sim.features.arithmetic
 import sim.features.camera
 import sim.features.lamps
 import sim.features.light
+import sim.features.matter
 import sim.features.media
 import sim.features.shapes  # noqa: F401 (importing registers)
 from sim.features.flags import Features

@@ -16,28 +16,32 @@ import warp as wp
 
 from sim.features import Features
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
+from sim.optics.absorption import absorbed_fraction
 from sim.photons.lamp_structs import DISTANT, RECTANGLE_LAMP, SPHERE_LAMP, make_lamp_structs
-from sim.scene_structs import make_ray_structs
+from sim.scene_structs import make_ray_structs, make_scene_structs
 
 __all__ = ["make_see_lamps"]
+
+UNSEEN = wp.constant(-1.0)
+"""In place of a distance."""
 
 CLEARANCE = 1.0 - 1e-6
 """A lamp that lies on a surface is in front of it, whatever rounding says."""
 
 
 @functools.cache
-def make_lamp_radiance(precision: str, *, distant: bool) -> object:
-    """Device function `lamp_radiance(emitter, ray, t)` [W m⁻² sr⁻¹].
+def make_distance_to_lamp(precision: str, *, distant: bool) -> object:
+    """Device function `distance_to_lamp(emitter, ray, t)` [m]; negative where it is not seen.
 
-    What the lamp adds, over its whole spectrum, to what is seen along the first `t` metres.
+    How far away the part of the lamp is that is seen along the first `t` metres.
     """
     structs = make_lamp_structs(precision)
     real, emitter_type = structs.real, structs.Emitter
     ray_type = make_ray_structs(precision).Ray
 
     @wp.func
-    def meets_sphere(emitter: emitter_type, ray: ray_type, t: real):
-        """Whether the ray enters the sphere; from inside there is nothing to be seen of it."""
+    def distance_to_sphere(emitter: emitter_type, ray: ray_type):
+        """Where the ray enters the sphere; from inside there is nothing to be seen of it."""
         offset = ray.origin - emitter.centre
         along = -wp.dot(offset, ray.direction)
         miss = offset + ray.direction * along
@@ -45,70 +49,75 @@ def make_lamp_radiance(precision: str, *, distant: bool) -> object:
         half_chord2 = radius2 - wp.dot(miss, miss)
         outside = wp.dot(offset, offset) > radius2
         if along <= real(0.0) or half_chord2 < real(0.0) or not outside:
-            return False
-        return (along - wp.sqrt(half_chord2)) * real(CLEARANCE) <= t
+            return real(UNSEEN)
+        return along - wp.sqrt(half_chord2)
 
     @wp.func
-    def meets_rectangle(emitter: emitter_type, ray: ray_type, t: real):
-        """Whether the ray crosses the rectangle towards its back: the front is what shines."""
+    def distance_to_rectangle(emitter: emitter_type, ray: ray_type):
+        """Where the ray crosses the rectangle towards its back: the front is what shines."""
         approach = wp.dot(ray.direction, emitter.frame[2])
         if approach >= real(0.0):
-            return False
+            return real(UNSEEN)
         offset = ray.origin - emitter.centre
         there = -wp.dot(offset, emitter.frame[2]) / approach
-        if there <= real(0.0) or there * real(CLEARANCE) > t:
-            return False
         local = emitter.frame * (offset + ray.direction * there)
-        return wp.abs(local[0]) <= emitter.half_u and wp.abs(local[1]) <= emitter.half_v
+        if wp.abs(local[0]) > emitter.half_u or wp.abs(local[1]) > emitter.half_v:
+            return real(UNSEEN)
+        return there
 
     @wp.func
-    def meets_distant(emitter: emitter_type, ray: ray_type, t: real):
-        """Whether the ray escapes to where the light comes from."""
+    def distance_to_sky(emitter: emitter_type, ray: ray_type):
+        """Infinite where the ray goes to where the light comes from."""
         chord = ray.direction + emitter.frame[2]
-        inside = emitter.sin2_half >= real(1.0)
-        inside = inside or wp.dot(chord, chord) <= real(4.0) * emitter.sin2_half
-        return inside and t == real(wp.inf)
+        all_around = emitter.sin2_half >= real(1.0)
+        if all_around or wp.dot(chord, chord) <= real(4.0) * emitter.sin2_half:
+            return real(wp.inf)
+        return real(UNSEEN)
 
     @wp.func
-    def lamp_radiance(emitter: emitter_type, ray: ray_type, t: real):
-        seen = bool(False)
+    def distance_to_lamp(emitter: emitter_type, ray: ray_type, t: real):
+        distance = real(UNSEEN)
         if emitter.visible == 1:
             if emitter.kind == SPHERE_LAMP:
-                seen = meets_sphere(emitter, ray, t)
+                distance = distance_to_sphere(emitter, ray)
             if emitter.kind == RECTANGLE_LAMP:
-                seen = meets_rectangle(emitter, ray, t)
+                distance = distance_to_rectangle(emitter, ray)
             if wp.static(distant):
                 if emitter.kind == DISTANT:
-                    seen = meets_distant(emitter, ray, t)
-        if seen:
-            return emitter.radiance
-        return real(0.0)
+                    distance = distance_to_sky(emitter, ray)
+        if distance * real(CLEARANCE) > t:
+            return real(UNSEEN)
+        return distance
 
-    return lamp_radiance
+    return distance_to_lamp
 
 
 @functools.cache
 def make_see_lamps(precision: str, features: Features) -> object:
-    """Device function `see_lamps(lights, ray, t, sight, scale, sums)`.
+    """Device function `see_lamps(lights, ray, met, sight, scale, sums)`.
 
-    It adds `scale` times the radiance, times the bands' width, of all lamps that are met along the
-    first `t` metres of the ray to the bands of the sight's row of `sums`: to all, or to its own.
+    It adds `scale` times the radiance, times the bands' width, of all lamps on the ray's way to
+    what it has `met` to the bands of the sight's row of `sums`: to all, or to its own.
     """
-    real = make_lamp_structs(precision).real
+    structs = make_scene_structs(precision)
+    real, ray_type, interaction_type = structs.real, structs.Ray, structs.Interaction
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
-    ray_type = make_ray_structs(precision).Ray
-    lamp_radiance = make_lamp_radiance(precision, distant=features.distant_lamps)
+    distance_to_lamp = make_distance_to_lamp(precision, distant=features.distant_lamps)
 
     @wp.func
     def see_lamps(
-        lights: lights_type, ray: ray_type, t: real, sight: sight_type, scale: real,
+        lights: lights_type, ray: ray_type, met: interaction_type, sight: sight_type, scale: real,
         sums: wp.array2d(dtype=wp.float64),
     ):
         receivers = lights.receivers
         lamp = int(0)
         while lamp < receivers.lamps:
-            radiance = scale * lamp_radiance(lights.lamps.emitters[lamp], ray, t)
-            if radiance > real(0.0):
+            emitter = lights.lamps.emitters[lamp]
+            distance = distance_to_lamp(emitter, ray, met.t)
+            if distance >= real(0.0):
+                radiance = scale * emitter.radiance
+                if wp.static(features.absorption):
+                    radiance -= radiance * absorbed_fraction(met.alpha, distance)
                 band = int(sight.band)
                 last = int(sight.band)
                 if sight.band == ALL_BANDS:

@@ -42,11 +42,12 @@ def spectral_radiance(lamp):
 
 
 def seen(
-    darkroom, lamp, *objects, position=(0.0, 0.0, 2.0), direction=(0.0, 0.0, -1.0), samples=1
+    darkroom, lamp, *objects, position=(0.0, 0.0, 2.0), direction=(0.0, 0.0, -1.0), samples=1,
+    **fields
 ):
     """(samples, bands) radiance along one ray: pixels, a ten-millionth of a radian wide."""
     scene = scenes.Scene(
-        objects=(BACK, *objects), emitters=(lamp,), film=scenes.Film(**SPREAD)
+        objects=(BACK, *objects), emitters=(lamp,), film=scenes.Film(**SPREAD), **fields
     )
     room = darkroom(scene, photons=10, radius=0.1, direct_light="lamps")
     ahead = tuple(np.add(position, direction))
@@ -122,3 +123,22 @@ def test_a_lamp_is_seen_by_reflection_once(darkroom, assert_mean):
     )
     r = normal_reflectance(1.5)
     assert_mean(found / spectral_radiance(lamp), 2.0 * r / (1.0 + r))
+
+
+@pytest.mark.parametrize("tinted", [False, True])
+@pytest.mark.parametrize("lamp", [sphere(), rectangle()], ids=["sphere", "rectangle"])
+def test_a_lamp_is_dimmed_by_the_way_to_it_alone(darkroom, assert_mean, lamp, tinted):
+    # Beer–Lambert in the ambient medium, over 2 m to the rectangle and 1.8 m to the sphere; what
+    # is behind the lamp does not matter.
+    alpha = np.array([0.4, 0.9]) if tinted else np.array([0.4, 0.4])
+    table = scenes.CoefficientTable(wavelength_nm=(475.0, 575.0), values=tuple(alpha))
+    ink = scenes.CauchyMedium(
+        a=(1.3,), range_nm=(300.0, 900.0), absorption=scenes.NapierianAbsorption(coefficient=table)
+    )
+    found = seen(darkroom, lamp, ambient=ink, samples=400)
+    # Of exp(−α d) over a band from 475 to 525 nm and one from 525 to 575, α linear in between.
+    distance = 2.0 if isinstance(lamp, scenes.RectangleLamp) else 1.8
+    edges = np.interp([0.0, 0.5, 1.0], [0.0, 1.0], alpha * distance)
+    low, high = edges[:-1], edges[1:]
+    expected = (np.exp(-low) - np.exp(-high)) / (high - low) if tinted else np.exp(-low)
+    assert_mean(found / spectral_radiance(lamp), expected, slack=1e-9)
