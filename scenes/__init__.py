@@ -32,6 +32,7 @@ from scenes.emitters import (
     Sun,
 )
 from scenes.errors import Problem, SceneError
+from scenes.exposure import SensorExposure
 from scenes.files import gallery, gallery_path, load, loads, schema
 from scenes.film import Film
 from scenes.frames import rotation_matrix
@@ -93,6 +94,7 @@ __all__ = [
     "SceneError",
     "SceneObject",
     "SellmeierMedium",
+    "SensorExposure",
     "SlitProfile",
     "SpectrumTable",
     "Sphere",

@@ -12,6 +12,7 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from scenes.errors import Problem, refusal
+from scenes.exposure import SensorExposure
 from scenes.fields import MIN_SIZE_M, Degrees, Direction, Extent, Position, Positive, Size
 from scenes.frames import Frame, frame_about
 from scenes.model import SceneModel
@@ -53,6 +54,22 @@ class Camera(SceneModel):
         description="height of the sensor (length); with fov_deg it decides the focal length, and"
         " so what an f-number means; 24 mm if not given",
     )
+
+    exposure: SensorExposure | None = Field(
+        default=None,
+        description="sensitivity and shutter, from which the exposure of the picture follows;"
+        " in place of the film's exposure_stops",
+    )
+
+    @property
+    def white_luminance(self) -> float | None:
+        """Luminance that the exposure makes full white [cd/m²]; None where there is none."""
+        if self.exposure is None:
+            return None
+        f_number = self.exposure.f_number or self.f_number
+        if f_number is None:
+            f_number = 0.5 * self.focal_length / self.lens_radius
+        return self.exposure.white_luminance(f_number)
 
     @property
     def sharp_distance(self) -> float:
@@ -104,4 +121,7 @@ class Camera(SceneModel):
             allowed = "left out, or an aperture_radius or f_number given: a pinhole has no focus"
             message = f"must be {allowed}"
             raise refusal(Problem("focus_distance", message, self.focus_distance, allowed))
+        if self.exposure is not None and self.exposure.f_number is None and not self.lens_radius:
+            allowed = "given, since a pinhole has no f-number of its own"
+            raise refusal(Problem("exposure.f_number", f"must be {allowed}", None, allowed))
         return self

@@ -138,6 +138,12 @@ class Scene(SceneModel):
             objects=dict(enumerate(self.objects)),
             emitters=dict(enumerate(self.emitters)),
         )
+        stops = self.film.exposure_stops
+        if stops is not None and self.camera is not None and self.camera.exposure is not None:
+            allowed = "left out where the camera has an exposure"
+            problems.append(
+                Problem("film.exposure_stops", f"must be {allowed}", stops, allowed)
+            )
         if problems:
             raise refusal(*problems)
         return self

@@ -30,11 +30,6 @@ class DistantEmitter(Emitter, Glowing):
     def cone_deg(self) -> float:
         """Half angle of the cone of these directions [degrees]."""
 
-    @property
-    @abstractmethod
-    def full_radiance(self) -> float:
-        """Radiance over the whole spectrum [W m⁻² sr⁻¹]."""
-
     def flux_through(self, radius: float) -> float:
         """Flux over the whole spectrum that comes into a sphere of this radius [m], in watts."""
         solid_angle = 4.0 * math.pi * math.sin(0.5 * math.radians(self.cone_deg)) ** 2

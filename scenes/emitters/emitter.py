@@ -1,5 +1,7 @@
 """What emitters have in common: a name and a spectrum, a flux, a surface that can be seen."""
 
+from abc import abstractmethod
+
 from pydantic import Field, StrictBool
 
 from scenes.emission import SpectrumSpec, resolve_spectrum
@@ -37,3 +39,8 @@ class Glowing(SceneModel):
         description="whether the camera sees the lamp itself, directly, through glass and in"
         " mirrors; it shines all the same",
     )
+
+    @property
+    @abstractmethod
+    def full_radiance(self) -> float:
+        """Radiance of its surface over the whole spectrum [W m⁻² sr⁻¹]."""

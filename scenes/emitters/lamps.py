@@ -3,6 +3,7 @@
 A lamp is light without matter: its surface shines, and stops nothing.
 """
 
+import math
 from typing import Literal
 
 from pydantic import Field
@@ -39,8 +40,18 @@ class SphereLamp(LocalEmitter, Glowing):
     position: Position = Field(description="centre (length)")
     radius: Size = Field(description="radius (length)")
 
+    @property
+    def full_radiance(self) -> float:
+        """Φ = π A L of a Lambertian surface, here of A = 4π R² [W m⁻² sr⁻¹]."""
+        return self.flux / (2.0 * math.pi * self.radius) ** 2
+
 
 class RectangleLamp(FlatRectangle, LocalEmitter, Glowing):
     """A rectangle that glows (Lambertian) on the side its normal points to."""
 
     type: Literal["rectangle"] = Field(default="rectangle", description="glowing rectangle")
+
+    @property
+    def full_radiance(self) -> float:
+        """Φ = π A L of a Lambertian surface [W m⁻² sr⁻¹]."""
+        return self.flux / (math.pi * self.size[0] * self.size[1])

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 import scenes
-from scenes.emitters import DistantEmitter
+from scenes.emitters import DistantEmitter, Glowing
 from sim.photons.lamp_structs import BEAM, DISTANT, POINT, RECTANGLE_LAMP, SPHERE_LAMP, SPOT
 from sim.scene_data import CompiledScene, axis_frame
 
-__all__ = ["emitter_row"]
+__all__ = ["emitter_row", "full_flux"]
 
 
 def emitter_row(compiled: CompiledScene, emitter: Any, flux: float) -> dict[str, Any]:
@@ -25,8 +25,13 @@ def emitter_row(compiled: CompiledScene, emitter: Any, flux: float) -> dict[str,
         "half_u": 0.0, "half_v": 0.0, "radius": 0.0, "sin2_half": 1.0, "widening": 0.0,
         "visible": 0, "flux": flux, "radiance": 0.0,
     }  # fmt: skip
+    if isinstance(emitter, Glowing):
+        of_all = flux / full_flux(compiled, emitter)
+        row |= {"visible": int(emitter.visible), "radiance": emitter.full_radiance * of_all}
     if isinstance(emitter, DistantEmitter):
-        return row | _distant(emitter, compiled.bounding_radius, flux)
+        row |= {"kind": int(DISTANT), "frame": axis_frame(emitter.axis)}
+        row |= {"radius": compiled.bounding_radius, "sin2_half": _sin2_half(emitter.cone_deg)}
+        return row
     row |= {"centre": compiled.to_local(emitter.position)}
     if isinstance(emitter, scenes.Beam):
         row |= _beam(emitter)
@@ -35,15 +40,18 @@ def emitter_row(compiled: CompiledScene, emitter: Any, flux: float) -> dict[str,
         row["sin2_half"] = _sin2_half(emitter.half_angle_deg)
     elif isinstance(emitter, scenes.SphereLamp):
         row |= {"kind": int(SPHERE_LAMP), "radius": emitter.radius}
-        # A Lambertian surface of area A has Φ = π A L, here with A = 4π R².
-        row |= {"visible": int(emitter.visible)}
-        row |= {"radiance": flux / (2.0 * np.pi * emitter.radius) ** 2}
     elif isinstance(emitter, scenes.RectangleLamp):
         width, height = emitter.size
         row |= {"kind": int(RECTANGLE_LAMP), "frame": np.stack(emitter.frame())}
-        row |= {"half_u": 0.5 * width, "half_v": 0.5 * height, "visible": int(emitter.visible)}
-        row |= {"radiance": flux / (np.pi * width * height)}
+        row |= {"half_u": 0.5 * width, "half_v": 0.5 * height}
     return row
+
+
+def full_flux(compiled: CompiledScene, emitter: Any) -> float:
+    """Flux over the whole spectrum; of a distant emitter, into a sphere around the scene [W]."""
+    if isinstance(emitter, DistantEmitter):
+        return emitter.flux_through(compiled.bounding_radius)
+    return float(emitter.flux)
 
 
 def _beam(beam: scenes.Beam) -> dict[str, Any]:
@@ -54,13 +62,6 @@ def _beam(beam: scenes.Beam) -> dict[str, Any]:
         radius = beam.profile.radius
         return row | {"round": 1, "half_u": radius, "half_v": radius, "radius": radius}
     return row | {"half_u": 0.5 * beam.profile.width, "half_v": 0.5 * beam.profile.height}
-
-
-def _distant(emitter: DistantEmitter, radius: float, flux: float) -> dict[str, Any]:
-    row: dict[str, Any] = {"kind": int(DISTANT), "frame": axis_frame(emitter.axis)}
-    row |= {"radius": radius, "sin2_half": _sin2_half(emitter.cone_deg)}
-    row |= {"visible": int(emitter.visible)}
-    return row | {"radiance": flux / emitter.flux_through(radius) * emitter.full_radiance}
 
 
 def _sin2_half(angle_deg: float) -> float:

@@ -8,9 +8,8 @@ import numpy.typing as npt
 import warp as wp
 
 import scenes
-from scenes.emitters import DistantEmitter
 from sim.photons.aiming import Aim, Guide, View, plan_photons
-from sim.photons.emitter_rows import emitter_row
+from sim.photons.emitter_rows import emitter_row, full_flux
 from sim.photons.lamp_structs import AIM_CELLS, make_lamp_structs
 from sim.precision import precision_types
 from sim.sampling.counter import seed_words
@@ -174,12 +173,7 @@ def _film_part(
     inside = float(np.sum(spectrum.band_flux(np.array([low, high]))))
     if inside <= 0.0:
         return None
-    flux = (
-        emitter.flux_through(compiled.bounding_radius)
-        if isinstance(emitter, DistantEmitter)
-        else emitter.flux
-    )
-    return spectrum.restricted(low, high), flux * inside / spectrum.total
+    return spectrum.restricted(low, high), full_flux(compiled, emitter) * inside / spectrum.total
 
 
 def _share(total: int, weights: list[float]) -> list[int]:
