@@ -40,6 +40,7 @@ from scenes.materials import Absorber, Dielectric, Lambertian, Metal, Mirror, is
 from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMedium
 from scenes.metals import MetalTable
 from scenes.objects import SceneObject
+from scenes.pixel_filter import BoxFilter, GaussianFilter, TentFilter
 from scenes.reflectance import ReflectanceTable
 from scenes.scene import RenderDefaults, Scene
 from scenes.shapes import (
@@ -59,6 +60,7 @@ __all__ = [
     "Beam",
     "Blackbody",
     "Box",
+    "BoxFilter",
     "Camera",
     "CauchyMedium",
     "CoefficientTable",
@@ -70,6 +72,7 @@ __all__ = [
     "ExtinctionAbsorption",
     "ExtinctionTable",
     "Film",
+    "GaussianFilter",
     "InternalTransmittance",
     "Lambertian",
     "Laser",
@@ -102,6 +105,7 @@ __all__ = [
     "Spot",
     "Sun",
     "TableMedium",
+    "TentFilter",
     "TransmittanceTable",
     "gallery",
     "gallery_path",

@@ -25,6 +25,22 @@ register(Feature(
 ))  # fmt: skip
 
 
+def _judge_filter(subject: Subject) -> Verdict:
+    kind = subject.scene.film.filter.type
+    if kind == "box":
+        return null("pixels are their squares")
+    return needed(f"the film has a {kind} filter")
+
+
+register(Feature(
+    name="pixel filter",
+    what="camera rays as densely as a tent or a Gaussian weighs them",
+    judge=_judge_filter,
+    flag="pixel_filter",
+    kernel="camera",
+))  # fmt: skip
+
+
 def _judge_visible(subject: Subject) -> Verdict:
     emitters = subject.scene.emitters
     count = sum(isinstance(one, Glowing) and one.visible for one in emitters)

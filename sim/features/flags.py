@@ -29,6 +29,7 @@ class Features:
         beams, sphere_lamps, rectangle_lamps: which extended lamps shadow rays can lead to.
         distant_lamps: some light comes from infinitely far away.
         thin_lens: the camera has an aperture.
+        pixel_filter: pixels are more than their squares.
         visible_lamps: camera paths can meet a lamp.
         media_count: how many media there are, the ambient one among them. A size, no feature.
         method: how light is followed. A choice of the caller's, no feature.
@@ -55,6 +56,7 @@ class Features:
     rectangle_lamps: bool = True
     distant_lamps: bool = True
     thin_lens: bool = True
+    pixel_filter: bool = True
     visible_lamps: bool = True
     media_count: int = 1
     method: Method = DEFAULT_METHOD

@@ -13,12 +13,19 @@ import numpy as np
 import warp as wp
 
 import scenes
+from scenes.pixel_filter import PixelFilter
 from sim.features import Features
 from sim.precision import precision_types
 from sim.sampling.directions import sample_disk
 from sim.scene_data import CompiledScene
 
 __all__ = ["compile_camera", "make_camera_functions", "make_camera_struct"]
+
+BOX = wp.constant(0)
+TENT = wp.constant(1)
+GAUSSIAN = wp.constant(2)
+
+TWO_PI = wp.constant(6.283185307179586)
 
 
 @functools.cache
@@ -36,6 +43,10 @@ def make_camera_struct(precision: str) -> Any:
         lens_right: vec3  # to the aperture's edge
         lens_up: vec3
         sharp_distance: real
+        filter: int  # BOX, TENT or GAUSSIAN
+        filter_reach: real  # pixels
+        filter_sigma: real
+        filter_mass: real  # of the Gaussian, within its reach
         width: int
         height: int
 
@@ -47,12 +58,35 @@ def make_camera_functions(precision: str, features: Features) -> SimpleNamespace
     """Device functions of a camera, for pixel coordinates (x, y) and lens coordinates (u0, u1).
 
     Returns:
-        A namespace with `look(camera, x, y)`, the unit direction through the lens' middle, and
-        `look_through(camera, x, y, u0, u1)`, origin and unit direction of the ray through a point
-        of the lens.
+        A namespace with `place_in_pixel(camera, u0, u1)`, coordinates (x, y) about the corner of
+        a pixel, as densely as the filter weighs them; `look(camera, x, y)`, the unit direction
+        through the lens' middle; and `look_through(camera, x, y, u0, u1)`, origin and unit
+        direction of the ray through a point of the lens.
     """
     types = precision_types(precision)
     real, camera_type = types.real, make_camera_struct(precision)
+
+    @wp.func
+    def tent(u: real, reach: real):
+        """The offset below which a tent has the share u: the inverse of its distribution."""
+        if u < real(0.5):
+            return reach * (wp.sqrt(u + u) - real(1.0))
+        return reach * (real(1.0) - wp.sqrt(real(2.0) - u - u))
+
+    @wp.func
+    def place_in_pixel(camera: camera_type, u0: real, u1: real):
+        half = real(0.5)
+        if wp.static(features.pixel_filter):
+            if camera.filter == TENT:
+                return half + tent(u0, camera.filter_reach), half + tent(u1, camera.filter_reach)
+            if camera.filter == GAUSSIAN:
+                # Box & Muller (1958), Ann. Math. Stat. 29, 610, within the reach.
+                rho = camera.filter_sigma * wp.sqrt(
+                    -real(2.0) * wp.log(real(1.0) - u0 * camera.filter_mass)
+                )
+                phi = real(TWO_PI) * u1
+                return half + rho * wp.cos(phi), half + rho * wp.sin(phi)
+        return u0, u1
 
     @wp.func
     def look(camera: camera_type, x: real, y: real):
@@ -69,7 +103,9 @@ def make_camera_functions(precision: str, features: Features) -> SimpleNamespace
             camera.position + on_lens, wp.normalize(ahead * camera.sharp_distance - on_lens)
         )
 
-    return SimpleNamespace(look=look, look_through=look_through)
+    return SimpleNamespace(
+        look=look, look_through=look_through, place_in_pixel=place_in_pixel
+    )
 
 
 def compile_camera(compiled: CompiledScene, camera: scenes.Camera, film: scenes.Film) -> Any:
@@ -89,6 +125,18 @@ def compile_camera(compiled: CompiledScene, camera: scenes.Camera, film: scenes.
     struct.lens_right = camera.lens_radius * right
     struct.lens_up = camera.lens_radius * up
     struct.sharp_distance = camera.sharp_distance
+    _fill_filter(struct, film.filter)
     struct.width = film.width
     struct.height = film.height
     return struct
+
+
+def _fill_filter(struct: Any, pixel_filter: PixelFilter) -> None:
+    """Fill the fields of the pixel filter; those of a box are all zero."""
+    if isinstance(pixel_filter, scenes.TentFilter):
+        struct.filter = int(TENT)
+        struct.filter_reach = pixel_filter.reach
+    elif isinstance(pixel_filter, scenes.GaussianFilter):
+        struct.filter = int(GAUSSIAN)
+        struct.filter_sigma = pixel_filter.sigma
+        struct.filter_mass = -np.expm1(-0.5 * (pixel_filter.reach / pixel_filter.sigma) ** 2)

@@ -81,7 +81,8 @@ def make_render_camera(precision: str, features: Features) -> Any:
     scene_type, ray_type = transport.Scene, transport.Ray
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
-    look_through = make_camera_functions(precision, features).look_through
+    seeing = make_camera_functions(precision, features)
+    look_through, place_in_pixel = seeing.look_through, seeing.place_in_pixel
     losses = features.absorption or features.finishes
     gather = make_gather(precision, features)
     see_lamps = make_see_lamps(precision, features)
@@ -192,7 +193,8 @@ def make_render_camera(precision: str, features: Features) -> Any:
         # Spread over the turns of a round, and drawn anew for the next one: rounds are replicates.
         key = hash64(hash64(film.key, wp.uint64(pixel)), wp.uint64(film.round))
         turn = wp.uint32(film.turn)
-        x, y = r2_point(key, turn, receivers.band_width_nm)
+        ux, uy = r2_point(key, turn, receivers.band_width_nm)
+        x, y = place_in_pixel(camera, ux, uy)
         inside_band = r1_point(key + wp.uint64(1), turn, receivers.band_width_nm)
         u0, u1 = r2_point(key + wp.uint64(4), turn, receivers.band_width_nm)
         origin, direction = look_through(
