@@ -12,7 +12,7 @@ from scenes.errors import Problem, refusal
 from scenes.media import DescribedMedium, MediumSpec, coloured, resolve_medium
 from scenes.metals import MetalSpec, resolve_metal
 from scenes.model import SceneModel
-from scenes.reflectance import Reflectance, ReflectanceTable, reflectance_at
+from scenes.reflectance import Reflectance, depends_on_wavelength, reflectance_at
 from spectra import Conductor, Medium, absorbing_media, published_absorption
 
 __all__ = ["Absorber", "Dielectric", "Lambertian", "Material", "Metal", "Mirror", "is_specular"]
@@ -75,6 +75,11 @@ class Lambertian(SceneModel):
         """Reflectance at wavelengths [nm], of the same shape, 0 to 1."""
         return reflectance_at(self.reflectance, wavelength_nm)
 
+    @property
+    def is_coloured(self) -> bool:
+        """Whether what it reflects depends on the wavelength."""
+        return depends_on_wavelength(self.reflectance)
+
 
 class Mirror(SceneModel):
     """Reflects like a mirror, the same share at any angle; the rest is swallowed."""
@@ -92,8 +97,7 @@ class Mirror(SceneModel):
     @property
     def is_coloured(self) -> bool:
         """Whether what it reflects depends on the wavelength."""
-        table = self.reflectance
-        return isinstance(table, ReflectanceTable) and len(set(table.values)) > 1
+        return depends_on_wavelength(self.reflectance)
 
 
 class Metal(SceneModel):

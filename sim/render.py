@@ -37,18 +37,30 @@ from sim.launch import load_kernels
 from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
-from sim.photons.photon_map import PhotonMap, build_photon_map, make_collect, make_reorder
+from sim.photons.photon_batch import PhotonBatch
+from sim.photons.photon_map import (
+    INDIRECT_KEPT,
+    INDIRECT_WIDTH,
+    PhotonMap,
+    build_photon_map,
+    make_collect,
+    make_reorder,
+)
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
+from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
 
 __all__ = ["compile_lamps_for", "gather_radius", "kernels_of", "radius_shrinkage", "render"]
+
+_THINNING_KEY = 0x7411
+"""Apart from every stream's number."""
 
 FOOTPRINTS_A_RADIUS = 2.0
 """The first pass gathers over a disc this many pixel widths in radius."""
@@ -99,10 +111,10 @@ def render(
     books = []
     rule = StopRule(plan, watch)
     with closing(studio.photon_maps()) as photon_maps:
-        for pass_index, (photon_map, pass_books) in enumerate(photon_maps):
+        for pass_index, (maps, pass_books) in enumerate(photon_maps):
             books.append(pass_books)
             with watch.timing("gather"):
-                studio.expose(film, photon_map, pass_index)
+                studio.expose(film, maps, pass_index)
             if film.passes % film.turns == 0 and rule.ends_after(film):
                 break
     return Picture(
@@ -139,23 +151,28 @@ def compile_lamps_for(
         SettingsError: there would have to be photons without end.
     """
     edges_nm = np.asarray(compiled.scene.film.edges_nm, dtype=np.float64)
-    if plan.direct_light == "photons":
-        _refuse_endless_light(compiled.scene)
+    _refuse_endless_light(compiled.scene, plan)
     if plan.direct_light == "photons":
         return compile_lamps(compiled, edges_nm, plan.photons, view=survey)
     return compile_guided_lamps(
         compiled, edges_nm, plan.photons, view=survey, seed=plan.seed,
-        max_interactions=plan.max_interactions, threads=plan.threads,
+        max_interactions=plan.max_interactions, bounces=plan.bounces, threads=plan.threads,
     )
 
 
-def _refuse_endless_light(scene: scenes.Scene) -> None:
-    """Photons from afar come to a sphere around the scene, an endless plane lies beyond it too."""
+def _refuse_endless_light(scene: scenes.Scene, plan: ResolvedSettings) -> None:
+    """Photons from afar come to a sphere around the scene; an endless plane lies beyond it too.
+
+    Shadow rays from the plane to the sky have no such limit.
+    """
     distant = [one.name for one in scene.emitters if isinstance(one, DistantEmitter)]
     endless = [one.name for one in scene.objects if isinstance(one.shape, scenes.Plane)]
     if distant and endless:
-        allowed = f'"lamps", for {distant[0]} is infinitely far away, and {endless[0]} has no end'
-        raise SettingsError("direct_light", "photons", allowed)
+        reason = f"for {distant[0]} is infinitely far away, and {endless[0]} has no end"
+        if plan.direct_light == "photons":
+            raise SettingsError("direct_light", "photons", f'"lamps", {reason}')
+        if plan.bounces > 0:
+            raise SettingsError("bounces", plan.bounces, f"0, {reason}")
 
 
 def radius_shrinkage(pass_index: int, alpha: float) -> float:
@@ -178,6 +195,14 @@ def gather_radius(survey: Survey) -> float:
 
 
 @dataclass(frozen=True)
+class _Maps:
+    """One pass's photons: those that no diffuse surface has reflected, and those that one has."""
+
+    straight: PhotonMap
+    bounced: PhotonMap | None
+
+
+@dataclass(frozen=True)
 class _Studio:
     """All that the passes of one run share."""
 
@@ -189,7 +214,7 @@ class _Studio:
     radius: float
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[tuple[PhotonMap, EnergyBooks], None, None]:
+    def photon_maps(self) -> Generator[tuple[_Maps, EnergyBooks], None, None]:
         """The photon map of each pass, in order, and its energy books.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
@@ -209,8 +234,8 @@ class _Studio:
 
     def _photon_map(
         self, pass_index: int, stop: threading.Event
-    ) -> tuple[PhotonMap, EnergyBooks]:
-        """Emit and trace the photons of one pass, and map them."""
+    ) -> tuple[_Maps, EnergyBooks]:
+        """Emit and trace the photons of one pass, and map them, one map for those that bounced."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
                 self.compiled,
@@ -220,29 +245,38 @@ class _Studio:
                 max_interactions=self.plan.max_interactions,
                 threads=self.plan.threads,
                 store_direct=self.plan.direct_light == "photons",
+                bounces=self.plan.bounces,
                 stop=stop,
                 on_done=self.watch.count_photons,
             )
+        radius = self.radius * radius_shrinkage(pass_index, self.plan.alpha)
         with self.watch.timing("build photon map"):
-            photon_map = build_photon_map(
-                self.compiled,
-                batch,
-                self.receivers,
-                self.radius * radius_shrinkage(pass_index, self.plan.alpha),
-                threads=self.plan.threads,
-                stop=stop,
+            if not self.compiled.features.interreflection:
+                return _Maps(self._sorted(batch, radius, stop), None), batch.books
+            first = fold_key(self.plan.seed, pass_index, _THINNING_KEY) % INDIRECT_KEPT
+            straight, bounced = batch.parted(every=INDIRECT_KEPT, first=first)
+            maps = _Maps(
+                self._sorted(straight, radius, stop),
+                self._sorted(bounced, INDIRECT_WIDTH * radius, stop),
             )
-        return photon_map, batch.books
+        return maps, batch.books
 
-    def expose(self, film: Film, photon_map: PhotonMap, pass_index: int) -> None:
+    def _sorted(self, batch: PhotonBatch, radius: float, stop: threading.Event) -> PhotonMap:
+        """The map of a batch."""
+        return build_photon_map(
+            self.compiled, batch, self.receivers, radius, threads=self.plan.threads, stop=stop
+        )
+
+    def expose(self, film: Film, maps: _Maps, pass_index: int) -> None:
         """Expose the film to one pass."""
         self.watch.pass_index = pass_index
         lights = compose_lights(
             self.plan.precision,
-            photon_map,
+            maps.straight,
             self.receivers,
             self.lamps,
             direct=self.plan.direct_light == "lamps",
+            bounced=maps.bounced,
         )
         expose(
             film,

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import warp as wp
 
+from sim.mesh_structs import make_mesh_structs
 from sim.precision import precision_types
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "SELLMEIER",
     "SHAPE_FLAT",
     "SHAPE_LENS",
+    "SHAPE_MESH",
     "SHAPE_POLYHEDRON",
     "SHAPE_SPHERE",
     "TABULATED",
@@ -41,6 +43,7 @@ SHAPE_SPHERE = wp.constant(0)
 SHAPE_FLAT = wp.constant(1)
 SHAPE_POLYHEDRON = wp.constant(2)
 SHAPE_LENS = wp.constant(3)
+SHAPE_MESH = wp.constant(4)
 
 
 @functools.cache
@@ -131,6 +134,9 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
     class Interaction:
         """What the surface does. `normal` faces the incoming ray; `side` 1 is the inside or back.
 
+        `part` is the part of the object's surface that this point is of: the face, of a mesh the
+        patch that sharp edges bound.
+
         `prim2` and `face2` are a second surface in the same place, −1 for none. `medium` is the
         one on the ray's side, `alpha` its absorption coefficient [1/m]. `absorbed` is the part of
         the flux that is lost on the way here and, at a mirror or a metal, to the surface.
@@ -146,6 +152,7 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
         normal: vec3
         prim: int
         face: int
+        part: int
         prim2: int
         face2: int
         side: int
@@ -176,6 +183,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
     shapes, rays = make_shape_structs(precision), make_ray_structs(precision)
     sphere, flat, plane = shapes.Sphere, shapes.Flat, shapes.Plane
     polyhedron, lens = shapes.Polyhedron, shapes.Lens
+    meshes_type = make_mesh_structs(precision).Meshes
 
     @wp.struct
     class Body:
@@ -190,7 +198,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         row: int
         material: int
         medium_inside: int
-        priority: int
+        rank: int  # of two media in one place the higher rank's fills it
         finish: int  # row of its mirror or metal
         dispersive: int
         neighbour_first: int
@@ -209,13 +217,13 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
 
     @wp.struct
     class Finish:
-        """A mirror's reflectance, or a metal's n and k, as rows of knots; 1 if it `varies`."""
+        """Reflectance of a mirror or a diffuse surface, or a metal's n and k, as rows of knots."""
 
         first: int
         count: int
         k_first: int
         k_count: int
-        varies: int
+        varies: int  # 1 if it depends on the wavelength
 
     @wp.struct
     class Scene:
@@ -224,6 +232,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         polyhedra: wp.array(dtype=polyhedron)
         planes: wp.array(dtype=plane)
         lenses: wp.array(dtype=lens)
+        meshes: meshes_type
         bodies: wp.array(dtype=Body)
         neighbours: wp.array(dtype=int)
         media: wp.array(dtype=Medium)

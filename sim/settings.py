@@ -47,7 +47,7 @@ its noise; twice the passes take 2.3 times the time for 0.74 of it, and 4 times 
 pass, which no longer limit it, 2.6 times the time for 0.97.
 """
 
-DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256}
+DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256, "bounces": 0}
 
 OPEN_PASSES: Final = 4096
 """Passes at most where the error or the time is to decide, and no number is given."""
@@ -58,6 +58,7 @@ _WHOLE_NUMBERS: Final = {
     "photons": (1, 2**28),
     "passes": (1, 2**20),
     "max_interactions": (1, 2**16),
+    "bounces": (0, 1000),
     "seed": (0, 2**63 - 1),
     "threads": (1, 1024),
 }
@@ -90,6 +91,8 @@ class RenderSettings:
         direct_light: What shows light that comes straight from a lamp: "lamps", by shadow rays,
             or "photons", from the photon map like all other light.
         max_interactions: Surfaces that one path may meet before it is culled.
+        bounces: Diffuse surfaces that light may be reflected by on its way to the one that is
+            seen; 0 shows what lamps, glass and mirrors send there.
         seed: Key of every random sequence; equal seeds give equal pictures.
         threads: CPU threads; None: all cores. It does not change the picture.
         device: "cpu", or "cuda:0" and so on.
@@ -112,6 +115,7 @@ class RenderSettings:
     alpha: float = 2 / 3
     direct_light: DirectLight = "lamps"
     max_interactions: int | None = None
+    bounces: int | None = None
     seed: int = 0
     threads: int | None = None
     device: str = "cpu"
@@ -160,7 +164,7 @@ class RenderSettings:
             The same settings with nothing left open but, perhaps, the radius.
         """
         values = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
-        for field in ("photons", "passes", "radius", "max_interactions"):
+        for field in ("photons", "passes", "radius", "max_interactions", "bounces"):
             if values[field] is None:
                 values[field] = getattr(scene.render, field)
             if values[field] is None:
@@ -197,6 +201,7 @@ class ResolvedSettings(RenderSettings):
     photons: int
     passes: int
     max_interactions: int
+    bounces: int
     threads: int
     precision: Precision
 

@@ -20,6 +20,7 @@ import warp as wp
 from sim.features import Features
 from sim.geometry.flat import intersect_plane, plane_coordinates
 from sim.geometry.lens import intersect_lens, lens_normal
+from sim.geometry.mesh import facet_normal, intersect_mesh, mesh_normal
 from sim.geometry.polyhedron import intersect_polyhedron
 from sim.geometry.sphere import intersect_sphere
 from sim.optics.absorption import absorbed_fraction
@@ -34,7 +35,14 @@ from sim.optics.dielectric import (
 )
 from sim.optics.dispersion import tabulated_index
 from sim.path_media import make_media_functions
-from sim.scene_structs import DIELECTRIC, LAMBERTIAN, METAL, MIRROR, make_scene_structs
+from sim.scene_structs import (
+    DIELECTRIC,
+    LAMBERTIAN,
+    METAL,
+    MIRROR,
+    SHAPE_MESH,
+    make_scene_structs,
+)
 from sim.surroundings import make_surroundings
 
 __all__ = [
@@ -56,6 +64,10 @@ EVENT_ABSORB = wp.constant(3)
 """An absorber: the light ends here."""
 EVENT_PASS = wp.constant(4)
 """A face hidden by another solid, the same medium on both sides: the light goes straight on."""
+
+
+MIN_COSINE = wp.constant(1e-3)
+"""A ray that grazes a face is not moved along it any further than one of this cosine."""
 
 
 @functools.cache
@@ -151,6 +163,23 @@ def make_intersect(precision: str, features: Features):
                     normal = lens_normal(lens, face, origin + direction * t)
                     hit.normal = wp.normalize(wp.transpose(lens.frame) * normal)
                 i += 1
+        if wp.static(features.meshes):
+            i = int(0)
+            while i < scene.meshes.count:
+                mesh = scene.meshes.rows[i]
+                leaving_face = face_left(ray, mesh.prim)
+                local = ray.origin - mesh.centre
+                t, face = intersect_mesh(
+                    scene.meshes, mesh, local, ray.direction, leaving_face, hit.t
+                )
+                if t >= real(0.0) and t < hit.t:
+                    hit.t = t
+                    hit.prim = mesh.prim
+                    hit.face = face
+                    hit.normal = mesh_normal(
+                        scene.meshes, mesh, face, local + ray.direction * t, ray.direction
+                    )
+                i += 1
         return hit
 
     return intersect
@@ -215,6 +244,20 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         return real(0.5) * (r_s + r_p)
 
     @wp.func
+    def facet_toward(scene: scene_type, met: interaction_type, direction: vec3):
+        """The surface's own normal toward the ray, of a mesh with smooth normals the facet's.
+
+        Near grazing a smooth normal can send light through the facet that should reflect it, or
+        back from one that it should pass: there the facet's normal rules.
+        """
+        normal = met.normal
+        if scene.bodies[met.prim].shape == SHAPE_MESH:
+            normal = facet_normal(scene.meshes, met.face)
+            if wp.dot(direction, normal) > real(0.0):
+                normal = -normal
+        return normal
+
+    @wp.func
     def scatter(scene: scene_type, ray: ray_type, hit: hit_type, indices: indices_type):
         # Structs are filled field by field: a struct assigned whole inside a branch is copied
         # at every merge of the compiled code, which made this step four times slower.
@@ -254,6 +297,10 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                             met.side = found.side
                             met.normal = found.normal
                             met.dispersive = body.dispersive
+            met.part = met.face
+            if wp.static(features.meshes):
+                if scene.bodies[met.prim].shape == SHAPE_MESH:
+                    met.part = scene.meshes.triangles[met.face].patch
             met.event = EVENT_ABSORB
             if body.material == LAMBERTIAN:
                 met.event = EVENT_DEPOSIT
@@ -271,15 +318,41 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                     total, reflectance, reflected, refracted = cross_boundary(
                         ray.direction, met.normal, eta
                     )
+                    if wp.static(features.meshes):
+                        facet = facet_toward(scene, met, ray.direction)
+                        passes = total == 1 or wp.dot(refracted, facet) < real(0.0)
+                        if not (passes and wp.dot(reflected, facet) > real(0.0)):
+                            met.normal = facet
+                            total, reflectance, reflected, refracted = cross_boundary(
+                                ray.direction, facet, eta
+                            )
                     met.eta = eta
                     met.total = total
                     met.reflectance = reflectance
                     met.reflected = reflected
                     met.refracted = refracted
+            if wp.static(features.interfaces):
+                # A third face in the place that the ray has just left has been dealt with there.
+                # Behind it, by more than the faces can be apart, no other one is met again.
+                if ray.prim >= 0 and hit.prim != ray.prim and body.material == DIELECTRIC:
+                    cos_theta = wp.abs(wp.dot(ray.direction, hit.normal))
+                    if hit.t * cos_theta <= scene.touch:
+                        met.event = EVENT_PASS
+                        met.dispersive = 0
+                        met.point += ray.direction * (
+                            scene.touch / wp.max(cos_theta, real(MIN_COSINE))
+                        )
+                        met.prim2 = -1
             if wp.static(features.finishes):
                 if body.material == MIRROR or body.material == METAL:
                     met.event = EVENT_BOUNDARY
                     cos_theta_i = wp.min(-wp.dot(ray.direction, met.normal), real(1.0))
+                    if wp.static(features.meshes):
+                        facet = facet_toward(scene, met, ray.direction)
+                        glance = reflect(ray.direction, met.normal, cos_theta_i)
+                        if wp.dot(glance, facet) <= real(0.0):
+                            met.normal = facet
+                            cos_theta_i = wp.min(-wp.dot(ray.direction, facet), real(1.0))
                     met.total = 1
                     met.opaque = 1
                     met.eta = real(1.0)

@@ -51,11 +51,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                              "writing the files comes on top")
     parser.add_argument("--error-map", type=png_file, metavar="OUT.png",
                         help="also draw each pixel's relative error")
+    parser.add_argument("--photon-map", action="store_true",
+                        help="draw the photons that the first pass stores, coloured by wavelength, "
+                             "and nothing else (default file: SCENE.photons.png, or --png)")
     parser.add_argument("--radius", type=float, metavar="M",
                         help="gather radius of the first pass [m] (default: two pixels' width)")
     parser.add_argument("--alpha", type=float, default=2 / 3, metavar="A",
                         help="how slowly the radius shrinks from pass to pass; 1: not at all "
                              "(default: 2/3)")
+    parser.add_argument("--bounces", type=int, metavar="N",
+                        help="diffuse surfaces that light may be reflected by on its way to the "
+                             "one that is seen (default: the scene's, else 0)")
     parser.add_argument("--precision", choices=("float32", "float64"),
                         help="arithmetic of tracing (default: float64 on cpu, else float32)")
     parser.add_argument("--seed", type=count, default=0, metavar="N",
@@ -90,6 +96,9 @@ def run(arguments: argparse.Namespace) -> None:
     given = {name: value for name, value in vars(arguments).items() if name in names}
     settings = RenderSettings(**given)
     scene = load(arguments.scene)
+    if arguments.photon_map:
+        _draw_photons(scene, settings, arguments.png or Path(f"{scene.source_name}.photons.png"))
+        return
     exr_path = arguments.output or Path(f"{scene.source_name}.exr")
     png_path = arguments.png or exr_path.with_suffix(".png")
     check_writable(exr_path)
@@ -108,6 +117,22 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.verbose:
         _print_books(picture)
         _print_timings(picture.timings, seconds)
+
+
+def _draw_photons(scene: Scene, settings: RenderSettings, path: Path) -> None:
+    """Draw the first pass's photons instead of a picture."""
+    from sim.atomic_file import check_writable, write_whole
+    from sim.image.png import encode_png
+    from sim.interruption import run_interruptibly
+
+    def work() -> memoryview:
+        from sim.photon_picture import picture_photons
+
+        return encode_png(picture_photons(scene, settings))
+
+    check_writable(path)
+    write_whole(path, run_interruptibly(work))
+    print(f"{path}: the photons that the first pass stores")
 
 
 def _rendered(

@@ -15,13 +15,14 @@ class Features:
     allows to leave it out: `Features()` is the full kernel's.
 
     Attributes:
-        spheres, flats, polyhedra, lenses: which shapes a ray can meet.
+        spheres, flats, polyhedra, lenses, meshes: which shapes a ray can meet.
         sellmeier, cauchy, tabulated: which dispersion formulas the media use.
         air_conversion: some index is converted between "relative to air" and "to vacuum".
         boundaries: light can meet a boundary between two media.
         interfaces: solids can touch, nest or overlap.
         absorption: some medium absorbs.
         finishes: light can meet a mirror or a metal.
+        interreflection: diffuse surfaces light one another.
         reflected_branches: boundaries can reflect.
         dispersion: boundaries can part light by its wavelength.
         undispersed_photons: photons that no dispersion has touched can be in the map.
@@ -39,6 +40,7 @@ class Features:
     flats: bool = True
     polyhedra: bool = True
     lenses: bool = True
+    meshes: bool = True
     sellmeier: bool = True
     cauchy: bool = True
     tabulated: bool = True
@@ -47,6 +49,7 @@ class Features:
     interfaces: bool = True
     absorption: bool = True
     finishes: bool = True
+    interreflection: bool = True
     reflected_branches: bool = True
     dispersion: bool = True
     undispersed_photons: bool = True

@@ -18,6 +18,7 @@ from typing import Literal
 
 import scenes
 from sim.features.flags import Features
+from sim.scene_neighbours import near_pairs
 from spectra import Medium
 
 __all__ = [
@@ -41,6 +42,7 @@ class Subject:
         air_powers: of each medium, the power of the index of air that its index is multiplied by.
         direct_light: the setting of this name; None: not known.
         precision: the setting of this name; None: not known.
+        bounces: the setting of this name; None: not known.
     """
 
     scene: scenes.Scene
@@ -48,11 +50,17 @@ class Subject:
     air_powers: tuple[int, ...]
     direct_light: str | None = None
     precision: str | None = None
+    bounces: int | None = None
 
     @cached_property
     def has_boundaries(self) -> bool:
         """Whether any object is made of a medium."""
         return any(isinstance(item.material, scenes.Dielectric) for item in self.scene.objects)
+
+    @cached_property
+    def near_pairs(self) -> list[tuple[int, int]]:
+        """Pairs of objects, one of them made of a medium, that may touch, nest or overlap."""
+        return near_pairs(self.scene)
 
     @cached_property
     def varying_media(self) -> tuple[bool, ...]:

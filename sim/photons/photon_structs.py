@@ -9,9 +9,11 @@ from sim.precision import precision_types
 
 __all__ = [
     "HISTORY_LIMIT",
-    "MAX_FACES",
     "MAX_OBJECTS",
+    "MAX_PARTS",
+    "add_bounce",
     "add_event",
+    "bounces_of",
     "has_events",
     "is_dispersed",
     "make_photon_structs",
@@ -20,17 +22,17 @@ __all__ = [
 ]
 
 MAX_OBJECTS = 1 << 17
-MAX_FACES = 1 << 13
-"""Objects and faces that a surface key of 31 bits can tell apart."""
+MAX_PARTS = 1 << 13
+"""Objects, and parts of their surfaces, that a surface key of 31 bits can tell apart."""
 
 HISTORY_LIMIT = 1023
 """Each count of a photon's history stops here: 10 bits apiece."""
 
 
 @wp.func
-def surface_key(prim: int, face: int, side: int):
-    """One integer for object, face and side: equal keys mean the same side of the same face."""
-    return (prim << 14) | (face << 1) | side
+def surface_key(prim: int, part: int, side: int):
+    """One integer for object, part and side: equal keys mean the same side of the same part."""
+    return (prim << 14) | (part << 1) | side
 
 
 @wp.func
@@ -43,6 +45,20 @@ def add_event(history: int, refracts: int):
     if ((history >> shift) & 1023) == 1023:
         return history
     return history + (1 << shift)
+
+
+@wp.func
+def add_bounce(history: int):
+    """History with one more bounce off a diffuse surface."""
+    if ((history >> 20) & 1023) == 1023:
+        return history
+    return history + (1 << 20)
+
+
+@wp.func
+def bounces_of(history: int):
+    """How many bounces off diffuse surfaces there were."""
+    return (history >> 20) & 1023
 
 
 @wp.func
@@ -101,5 +117,6 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         max_interactions: int
         store_direct: int  # 0: what comes straight from the lamp is booked, but not stored
         branch_threshold: real
+        bounces: int  # off diffuse surfaces, at most
 
     return SimpleNamespace(Photons=Photons, Job=Job)

@@ -18,6 +18,7 @@ import warp as wp
 from sim.errors import SettingsError
 from sim.features import Features
 from sim.geometry.flat import intersect_plane, plane_coordinates
+from sim.optics.absorption import absorbed_fraction
 from sim.scene_data import CompiledScene
 from sim.study.receiver_bins import ReceiverBins
 from sim.transport import EVENT_BOUNDARY, EVENT_PASS, make_transport
@@ -69,7 +70,7 @@ def make_chain_structs(precision: str, features: Features) -> SimpleNamespace:
         centre: vec3
         frame: mat33  # rows: u, v, normal
         reflects: wp.array(dtype=int)
-        length: int  # boundaries to cross; −1: as many as there are, all refracting
+        length: int  # surfaces to cross; −1: as many as there are, all refracting
         limit: int
 
     return SimpleNamespace(Chain=ChainData, transport=transport, real=real, vec3=vec3)
@@ -87,12 +88,12 @@ def make_trace_chain(precision: str, features: Features) -> Any:
 
     @wp.func
     def land(chain: chain_type, ray: ray_type, met: met_type):
-        """Whether the ray meets the receiver's plane before anything else, and where."""
+        """Whether the ray meets the receiver's plane before anything else, where, how far away."""
         local = ray.origin - chain.centre
         t = intersect_plane(local, ray.direction, chain.frame[2])
         free = met.prim < 0 or met.prim == chain.receiver or t < met.t
         u, v = plane_coordinates(local + ray.direction * t, chain.frame)
-        return t >= real(0.0) and free, u, v
+        return t >= real(0.0) and free, u, v, t
 
     @wp.kernel(module="unique", enable_backward=False)
     def follow_chain(
@@ -118,21 +119,25 @@ def make_trace_chain(precision: str, features: Features) -> Any:
         while step <= chain.limit:
             met = interact(scene, ray, indices)
             boundary = met.event == EVENT_BOUNDARY
-            if wp.static(losses):
-                share -= share * met.absorbed
-            if step == chain.length or (chain.length < 0 and not boundary):
-                landed, u, v = land(chain, ray, met)
+            passes = met.event == EVENT_PASS
+            if step == chain.length or (chain.length < 0 and not boundary and not passes):
+                landed, u, v, distance = land(chain, ray, met)
                 if landed:
+                    if wp.static(features.absorption):
+                        share -= share * absorbed_fraction(met.alpha, distance)
                     out_landings[i] = vec3(u, v, share)
                     out_signatures[i] = signature
                 break
-            if not boundary and met.event != EVENT_PASS:
+            if not boundary and not passes:
                 break
+            if wp.static(losses):
+                share -= share * met.absorbed
             reflects = int(0)
             if chain.length >= 0:
                 reflects = chain.reflects[step]
-            if met.event == EVENT_PASS:
-                step += 0
+            if passes:
+                if reflects == 1:
+                    break
             elif reflects == 1 or met.opaque == 1:
                 share *= met.reflectance
                 ray.direction = met.reflected
@@ -148,7 +153,7 @@ def make_trace_chain(precision: str, features: Features) -> Any:
             ray.face2 = met.face2
             # FNV-1a over the faces met (Fowler, Noll & Vo): 64 bits tell sequences apart.
             signature = (signature ^ wp.uint64(met.prim + 1)) * wp.uint64(1099511628211)
-            signature = (signature ^ wp.uint64(met.face + 1)) * wp.uint64(1099511628211)
+            signature = (signature ^ wp.uint64(met.part + 1)) * wp.uint64(1099511628211)
             step += 1
 
     return follow_chain
@@ -166,8 +171,9 @@ def make_chain(
     Args:
         compiled: the scene, in float64.
         receiver: where the chain ends.
-        branches: "refract" or "reflect" at each surface on the way, and no surface more; an
-            empty sequence is direct light. None refracts at every surface there is.
+        branches: "refract" or "reflect" at each surface on the way, and no surface more; one that
+            is hidden inside a solid counts as refracting, as with photons; an empty sequence is
+            direct light. None refracts at every surface there is.
         max_interactions: surfaces to follow a ray through where `branches` is None.
 
     Raises:

@@ -106,3 +106,5 @@ def test_photons_under_an_endless_floor_are_not_the_suns():
     assert abs(picture.energy.residual) < 1e-12
     with pytest.raises(sim.SettingsError, match=r'"lamps", for emitters\[0\] is infinitely'):
         render((plane, FLOOR), low, camera, photons=100, passes=1, direct_light="photons")
+    with pytest.raises(sim.SettingsError, match=r"bounces.* 0, for emitters\[0\] is infinitely"):
+        render((plane, FLOOR), low, camera, photons=100, passes=1, bounces=3)
