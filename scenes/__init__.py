@@ -23,6 +23,7 @@ from scenes.emission import Blackbody, Laser, Lines, SpectrumTable
 from scenes.emitters import (
     Beam,
     Environment,
+    Mask,
     Point,
     RectangleLamp,
     RoundProfile,
@@ -84,6 +85,7 @@ __all__ = [
     "Lens",
     "LensSurface",
     "Lines",
+    "Mask",
     "Mesh",
     "Metal",
     "MetalTable",

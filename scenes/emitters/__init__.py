@@ -8,6 +8,7 @@ from scenes.emitters.beam import Beam, Profile, RoundProfile, SlitProfile
 from scenes.emitters.distant import DistantEmitter, Environment, Sun
 from scenes.emitters.emitter import Emitter, Glowing, LocalEmitter
 from scenes.emitters.lamps import Point, RectangleLamp, SphereLamp, Spot
+from scenes.emitters.mask import Mask
 
 __all__ = [
     "AnyEmitter",
@@ -18,6 +19,7 @@ __all__ = [
     "Environment",
     "Glowing",
     "LocalEmitter",
+    "Mask",
     "Point",
     "Profile",
     "RectangleLamp",
@@ -26,6 +28,7 @@ __all__ = [
     "SphereLamp",
     "Spot",
     "Sun",
+    "has_mask",
 ]
 
 AnyLocalEmitter = Beam | Point | Spot | SphereLamp | RectangleLamp
@@ -33,3 +36,10 @@ AnyLocalEmitter = Beam | Point | Spot | SphereLamp | RectangleLamp
 
 AnyEmitter = Annotated[AnyLocalEmitter | Sun | Environment, Field(discriminator="type")]
 """Any emitter."""
+
+
+def has_mask(emitter: Emitter) -> bool:
+    """Whether light comes through a mask."""
+    if isinstance(emitter, Beam):
+        return isinstance(emitter.profile, SlitProfile) and emitter.profile.mask is not None
+    return isinstance(emitter, RectangleLamp) and emitter.mask is not None

@@ -9,6 +9,7 @@ from typing import Literal
 from pydantic import Field
 
 from scenes.emitters.emitter import Glowing, LocalEmitter
+from scenes.emitters.mask import Mask
 from scenes.fields import Degrees, Direction, Position, Size
 from scenes.shapes import FlatRectangle
 
@@ -50,8 +51,11 @@ class RectangleLamp(FlatRectangle, LocalEmitter, Glowing):
     """A rectangle that glows (Lambertian) on the side its normal points to."""
 
     type: Literal["rectangle"] = Field(default="rectangle", description="glowing rectangle")
+    mask: Mask | None = Field(
+        default=None, description="where the light comes through; everywhere if not given"
+    )
 
     @property
     def full_radiance(self) -> float:
-        """Φ = π A L of a Lambertian surface [W m⁻² sr⁻¹]."""
+        """Φ = π A L of a Lambertian surface, the mean over it if masked [W m⁻² sr⁻¹]."""
         return self.flux / (math.pi * self.size[0] * self.size[1])

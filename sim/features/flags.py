@@ -29,6 +29,7 @@ class Features:
         direct_light: shadow rays find what comes straight from the lamps.
         beams, sphere_lamps, rectangle_lamps: which extended lamps shadow rays can lead to.
         distant_lamps: some light comes from infinitely far away.
+        masks: some lamp or beam has a mask.
         thin_lens: the camera has an aperture.
         pixel_filter: pixels are more than their squares.
         visible_lamps: camera paths can meet a lamp.
@@ -58,6 +59,7 @@ class Features:
     sphere_lamps: bool = True
     rectangle_lamps: bool = True
     distant_lamps: bool = True
+    masks: bool = True
     thin_lens: bool = True
     pixel_filter: bool = True
     visible_lamps: bool = True

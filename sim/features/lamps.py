@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import scenes
-from scenes.emitters import DistantEmitter
+from scenes.emitters import DistantEmitter, has_mask
 from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
 
 __all__: list[str] = []
@@ -61,4 +61,17 @@ register(Feature(
     what="photons along lines through the scene, shadow rays to the sun and the sky",
     judge=_judge_distant,
     flag="distant_lamps",
+))  # fmt: skip
+
+
+def _judge_masks(subject: Subject) -> Verdict:
+    count = sum(has_mask(one) for one in subject.scene.emitters)
+    return needed(f"masks: {count}") if count else null("no mask")
+
+
+register(Feature(
+    name="masks",
+    what="lamps and beams that shine through a mask, cell by cell",
+    judge=_judge_masks,
+    flag="masks",
 ))  # fmt: skip

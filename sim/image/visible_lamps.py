@@ -17,6 +17,7 @@ import warp as wp
 from sim.features import Features
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
 from sim.optics.absorption import absorbed_fraction
+from sim.photons.cells import make_cell_functions
 from sim.photons.lamp_structs import DISTANT, RECTANGLE_LAMP, SPHERE_LAMP, make_lamp_structs
 from sim.scene_structs import make_ray_structs, make_scene_structs
 
@@ -102,7 +103,19 @@ def make_see_lamps(precision: str, features: Features) -> object:
     structs = make_scene_structs(precision)
     real, ray_type, interaction_type = structs.real, structs.Ray, structs.Interaction
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
+    lamp_structs = make_lamp_structs(precision)
+    lamps_type, emitter_type = lamp_structs.Lamps, lamp_structs.Emitter
+    mask_density = make_cell_functions(precision).mask_density
     distance_to_lamp = make_distance_to_lamp(precision, distant=features.distant_lamps)
+
+    @wp.func
+    def mask_factor(lamps: lamps_type, emitter: emitter_type, ray: ray_type, distance: real):
+        """Radiance of the rectangle's point at this distance, relative to the mean over it."""
+        local = emitter.frame * (ray.origin + ray.direction * distance - emitter.centre)
+        half = real(0.5)
+        s = half + half * local[0] / emitter.half_u
+        t = half + half * local[1] / emitter.half_v
+        return mask_density(lamps.cdf, emitter, s, t)
 
     @wp.func
     def see_lamps(
@@ -116,6 +129,9 @@ def make_see_lamps(precision: str, features: Features) -> object:
             distance = distance_to_lamp(emitter, ray, met.t)
             if distance >= real(0.0):
                 radiance = scale * emitter.radiance
+                if wp.static(features.masks):
+                    if emitter.first_mask >= 0:
+                        radiance *= mask_factor(lights.lamps, emitter, ray, distance)
                 if wp.static(features.absorption):
                     radiance -= radiance * absorbed_fraction(met.alpha, distance)
                 band = int(sight.band)

@@ -17,9 +17,9 @@ __all__ = ["make_cell_functions"]
 
 @functools.cache
 def make_cell_functions(precision: str) -> SimpleNamespace:
-    """Device functions of distributions over cells: `invert_square`, `cell_density`."""
+    """Device functions of distributions over cells: of a target's square, and of a mask."""
     structs = make_lamp_structs(precision)
-    real = structs.real
+    real, emitter_type = structs.real, structs.Emitter
 
     @wp.func
     def locate(
@@ -63,6 +63,44 @@ def make_cell_functions(precision: str) -> SimpleNamespace:
         along_v = cdf[row + j + 1] - cdf[row + j]
         return along_u * along_v * real(wp.static(float(AIM_CELLS * AIM_CELLS)))
 
+    @wp.func
+    def through_mask(
+        cdf: wp.array(dtype=real), guide: wp.array(dtype=int), emitter: emitter_type, u0: real,
+        u1: real,
+    ):
+        """Point of the unit square, as densely as light comes through the emitter's mask."""
+        i, s = locate(cdf, guide, emitter.first_mask, emitter.mask_columns, u0)
+        row = emitter.first_mask + emitter.mask_columns + 1 + i * (emitter.mask_rows + 1)
+        j, t = locate(cdf, guide, row, emitter.mask_rows, u1)
+        s = (real(i) + s) / real(emitter.mask_columns)
+        return s, (real(j) + t) / real(emitter.mask_rows)
+
+    @wp.func
+    def mask_cell(emitter: emitter_type, s: real, t: real):
+        """Where (s, t) is: place in the distribution of columns, and in that of its column."""
+        i = wp.clamp(int(s * real(emitter.mask_columns)), 0, emitter.mask_columns - 1)
+        j = wp.clamp(int(t * real(emitter.mask_rows)), 0, emitter.mask_rows - 1)
+        column = emitter.first_mask + emitter.mask_columns + 1 + i * (emitter.mask_rows + 1)
+        return emitter.first_mask + i, column + j
+
+    @wp.func
+    def mask_density(cdf: wp.array(dtype=real), emitter: emitter_type, s: real, t: real):
+        """Density of `through_mask` at (s, t), relative to a uniform one."""
+        along, across = mask_cell(emitter, s, t)
+        share = (cdf[along + 1] - cdf[along]) * (cdf[across + 1] - cdf[across])
+        return share * real(emitter.mask_columns) * real(emitter.mask_rows)
+
+    @wp.func
+    def before_mask(cdf: wp.array(dtype=real), emitter: emitter_type, s: real, t: real):
+        """The numbers that `through_mask` turns into (s, t)."""
+        along, across = mask_cell(emitter, s, t)
+        x = s * real(emitter.mask_columns) - real(along - emitter.first_mask)
+        y = t * real(emitter.mask_rows)
+        y -= wp.floor(y)
+        u0 = cdf[along] + x * (cdf[along + 1] - cdf[along])
+        return u0, cdf[across] + y * (cdf[across + 1] - cdf[across])
+
     return SimpleNamespace(
-        locate=locate, invert_square=invert_square, cell_density=cell_density
-    )
+        locate=locate, invert_square=invert_square, cell_density=cell_density,
+        through_mask=through_mask, mask_density=mask_density, before_mask=before_mask,
+    )  # fmt: skip

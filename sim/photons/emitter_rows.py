@@ -3,13 +3,15 @@
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import scenes
 from scenes.emitters import DistantEmitter, Glowing
 from sim.photons.lamp_structs import BEAM, DISTANT, POINT, RECTANGLE_LAMP, SPHERE_LAMP, SPOT
 from sim.scene_data import CompiledScene, axis_frame
 
-__all__ = ["emitter_row", "full_flux"]
+__all__ = ["emitter_row", "full_flux", "mask_functions"]
+FloatArray = npt.NDArray[np.float64]
 
 
 def emitter_row(compiled: CompiledScene, emitter: Any, flux: float) -> dict[str, Any]:
@@ -52,6 +54,28 @@ def full_flux(compiled: CompiledScene, emitter: Any) -> float:
     if isinstance(emitter, DistantEmitter):
         return emitter.flux_through(compiled.bounding_radius)
     return float(emitter.flux)
+
+
+def mask_functions(emitter: Any) -> list[FloatArray]:
+    """Distribution functions over a mask's columns, then over each column's cells, bottom up.
+
+    Empty for an emitter without a mask.
+    """
+    masked = emitter.profile if isinstance(emitter, scenes.Beam) else emitter
+    mask = getattr(masked, "mask", None)
+    if mask is None:
+        return []
+    columns = mask.cells()[::-1].T
+    sums = columns.sum(axis=1)
+    # No light goes to a dark column: its cells may be spread anyhow.
+    inside = np.where(sums[:, None] > 0.0, columns, 1.0)
+    return [_cumulated(sums), *(_cumulated(one) for one in inside)]
+
+
+def _cumulated(weights: FloatArray) -> FloatArray:
+    """0, the running sums of `weights` in parts of the whole, and at the end exactly 1."""
+    sums = np.concatenate([[0.0], np.cumsum(weights)])
+    return np.asarray(sums / sums[-1])
 
 
 def _beam(beam: scenes.Beam) -> dict[str, Any]:

@@ -65,6 +65,9 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         first_segment: int
         segment_count: int
         first_cdf: int  # of its segments, in Lamps.cdf
+        first_mask: int  # of its mask's cells, columns first, in Lamps.cdf; −1: it has none
+        mask_columns: int
+        mask_rows: int
 
     @wp.struct
     class Target:

@@ -9,7 +9,7 @@ import warp as wp
 
 import scenes
 from sim.photons.aiming import Aim, Guide, View, plan_photons
-from sim.photons.emitter_rows import emitter_row, full_flux
+from sim.photons.emitter_rows import emitter_row, full_flux, mask_functions
 from sim.photons.lamp_structs import AIM_CELLS, make_lamp_structs
 from sim.precision import precision_types
 from sim.sampling.counter import seed_words
@@ -85,7 +85,9 @@ def compile_lamps(
     counts = _share(photons, list(guide.shares))
     tables = _Tables()
     for (emitter, spectrum, flux), aims, count in zip(shining, guide.aims, counts, strict=True):
-        tables.add(emitter_row(compiled, emitter, flux), spectrum, aims, count)
+        tables.add(
+            emitter_row(compiled, emitter, flux), spectrum, aims, count, mask_functions(emitter)
+        )
     flux = sum(flux for _, _, flux in shining)
     spectra = tuple(spectrum for _, spectrum, _ in shining)
     return Lamps(tables.on_device(compiled), tuple(tables.streams), flux, spectra, guide.aims)
@@ -107,14 +109,17 @@ class _Tables:
         spectrum: EmissionSpectrum,
         aims: tuple[Aim, ...],
         photons: int,
+        mask: list[FloatArray],
     ) -> None:
-        """Add a lamp with its spectrum and its aims, among which `photons` are shared out."""
+        """Add a lamp with its spectrum, mask and aims, among which `photons` are shared out."""
         pieces, shares = _segments(spectrum)
         self.emitters.append({
             **emitter,
             "first_target": len(self.targets), "target_count": len(aims),
             "first_segment": len(self.segments), "segment_count": len(pieces),
             "first_cdf": self._add_distribution(shares),
+            "first_mask": self._add_distribution(*mask) if mask else -1,
+            "mask_columns": len(mask) - 1, "mask_rows": len(mask[-1]) - 1 if mask else 0,
         })  # fmt: skip
         self.segments.extend(pieces)
         for aim, count in zip(aims, _share(photons, [a.share for a in aims]), strict=True):

@@ -15,6 +15,7 @@ import warp as wp
 
 from sim.features import Features
 from sim.launch import cut_ranges, launch_ranges
+from sim.photons.cells import make_cell_functions
 from sim.photons.densities import make_density_functions
 from sim.photons.emission import make_emission
 from sim.photons.energy import BOOK_COLUMNS
@@ -45,18 +46,23 @@ def make_retrace_emission(precision: str, features: Features) -> Any:
     real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
     emitter_type = structs.Emitter
     emit = make_emission(precision, features)
+    before_mask = make_cell_functions(precision).before_mask
     densities = make_density_functions(precision, distant=features.distant_lamps)
     target_density, square_of_target = densities.target_density, densities.square_of_target
 
     @wp.func
-    def square_of_profile(emitter: emitter_type, origin: vec3):
+    def square_of_profile(lamps: lamps_type, emitter: emitter_type, origin: vec3):
         offset = origin - emitter.centre
         x = wp.dot(offset, emitter.frame[0]) / emitter.half_u
         y = wp.dot(offset, emitter.frame[1]) / emitter.half_v
         if emitter.round == 1:
             return disk_square(x, y)
-        half = real(0.5)
-        return half + half * x, half + half * y
+        s = real(0.5) + real(0.5) * x
+        t = real(0.5) + real(0.5) * y
+        if wp.static(features.masks):
+            if emitter.first_mask >= 0:
+                return before_mask(lamps.cdf, emitter, s, t)
+        return s, t
 
     @wp.kernel(module="unique", enable_backward=False)
     def retrace_emission(
@@ -82,7 +88,7 @@ def make_retrace_emission(precision: str, features: Features) -> Any:
             t = real(0.5)
             density = target.photons
             if emitter.kind == BEAM:
-                s, t = square_of_profile(emitter, ray.origin)
+                s, t = square_of_profile(lamps, emitter, ray.origin)
             elif flux > real(0.0):
                 density *= target_density(
                     lamps, emitter, target, ray.origin, ray.direction,

@@ -218,7 +218,7 @@ def _find_emitter(scene: Scene, name: str) -> AnyLocalEmitter:
         if lamp.name == name:
             if has_charts(lamp):
                 return lamp
-            raise SettingsError("emitter", name, "an emitter that is not infinitely far away")
+            raise SettingsError("emitter", name, "one not infinitely far away, and without mask")
     names = ", ".join(lamp.name for lamp in scene.emitters)
     raise SettingsError("emitter", name, f"an emitter of the scene: {names}")
 

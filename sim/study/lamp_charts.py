@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 import scenes
-from scenes.emitters import AnyEmitter, AnyLocalEmitter, LocalEmitter
+from scenes.emitters import AnyEmitter, AnyLocalEmitter, LocalEmitter, has_mask
 from sim.errors import SettingsError
 from sim.scene_data import axis_frame
 from sim.study.beam_charts import make_beam_charts
@@ -30,8 +30,8 @@ it or miss it by rounding. Hardly any light enters there."""
 
 
 def has_charts(emitter: AnyEmitter) -> TypeGuard[AnyLocalEmitter]:
-    """Whether the lamp is one whose rays can be charted: it must be somewhere in the scene."""
-    return isinstance(emitter, LocalEmitter)
+    """Whether the lamp's rays can be charted: it is somewhere in the scene, and has no mask."""
+    return isinstance(emitter, LocalEmitter) and not has_mask(emitter)
 
 
 def has_extent(emitter: AnyEmitter) -> bool:
