@@ -18,6 +18,7 @@ from sim.errors import SettingsError
 from sim.features import Features
 from sim.ray_path import RayPath
 from sim.scene_data import CompiledScene, compile_scene
+from sim.scene_media import require_known
 from sim.transport import (
     EVENT_ABSORB,
     EVENT_BOUNDARY,
@@ -25,7 +26,6 @@ from sim.transport import (
     EVENT_PASS,
     make_transport,
 )
-from spectra import air_index
 
 __all__ = ["trace_compiled_rays", "trace_ray"]
 
@@ -187,7 +187,8 @@ def trace_compiled_rays(
     if max_interactions < 1:
         raise SettingsError("max_interactions", max_interactions, "a whole number from 1")
     reflects = _reflects(branches)
-    _require_indices(compiled, wavelengths_nm)
+    has_air = compiled.features.air_conversion
+    require_known(compiled.scene, compiled.media, wavelengths_nm, has_air=has_air)
     structs, device, rays = compiled.structs, compiled.device, len(origins)
     size = (rays, max_interactions)
     local = compiled.to_local(origins)
@@ -262,14 +263,6 @@ class _Record:
         half_chord = np.sqrt(max(reach * reach - closest2, 0.0))
         exit_point: FloatArray = start + max(half_chord - along, 0.5 * reach) * direction
         return exit_point
-
-
-def _require_indices(compiled: CompiledScene, wavelengths_nm: FloatArray) -> None:
-    """Raise `spectra.WavelengthOutOfRange` where some medium of the scene has no index."""
-    for medium in reversed(compiled.media):  # those of the objects first
-        medium.eta(wavelengths_nm)
-    if compiled.features.air_conversion:
-        air_index(wavelengths_nm)
 
 
 def _reflects(branches: Sequence[str]) -> npt.NDArray[np.int32]:
