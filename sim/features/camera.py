@@ -53,4 +53,5 @@ register(Feature(
     judge=_judge_visible,
     flag="visible_lamps",
     kernel="camera",
+    separable=True,
 ))  # fmt: skip
