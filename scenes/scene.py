@@ -14,7 +14,7 @@ from pydantic import (
 
 from scenes.camera import Camera
 from scenes.checks import cross_problems
-from scenes.emitters import AnyEmitter
+from scenes.emitters import AnyEmitter, Glowing
 from scenes.errors import Problem, SceneError, refusal
 from scenes.fields import Count, Size, is_file
 from scenes.film import Film
@@ -95,7 +95,8 @@ class Scene(SceneModel):
         """Make sure that a picture can be taken.
 
         Raises:
-            SceneError: if camera, emitters, light of recorded wavelengths or receivers are missing.
+            SceneError: if camera, emitters, light of recorded wavelengths or what shows it are
+                missing.
         """
         problems = []
         if self.camera is None:
@@ -107,8 +108,11 @@ class Scene(SceneModel):
             allowed = f"an emitter that shines between {low:g} and {high:g} nm"
             message = f"none gives light that the film records; it needs {allowed}"
             problems.append(Problem("emitters", message, None, allowed))
-        if not any(isinstance(one.material, Lambertian) for one in self.objects):
-            allowed = "at least one [[objects]] with a lambertian material, to receive light"
+        receives = any(isinstance(one.material, Lambertian) for one in self.objects)
+        shows = any(isinstance(one, Glowing) and one.visible for one in self.emitters)
+        if not receives and not shows:
+            allowed = "at least one [[objects]] with a lambertian material, to receive light,"
+            allowed += " or a lamp that can be seen"
             problems.append(_lacking("objects", allowed))
         if problems:
             raise SceneError(self.source_name, problems)

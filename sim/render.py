@@ -95,7 +95,7 @@ def render(
             scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device,
             passes=plan.passes,
         )
-        radius = plan.radius or gather_radius(survey)
+        radius = plan.radius or gather_radius(survey, unseen=_radius_unseen(compiled))
     studio = _Studio(compiled, lamps, receivers, camera, plan, radius, watch)
     books = []
     rule = StopRule(plan, watch)
@@ -170,13 +170,24 @@ def radius_shrinkage(pass_index: int, alpha: float) -> float:
     return float(np.sqrt(np.prod((i + alpha) / (i + 1.0))))
 
 
-def gather_radius(survey: Survey) -> float:
+def _radius_unseen(compiled: CompiledScene) -> float | None:
+    """A radius for a picture of lamps alone, on which nothing depends as far as one can tell."""
+    return 0.01 * compiled.bounding_radius if compiled.features.visible_lamps else None
+
+
+def gather_radius(survey: Survey, *, unseen: float | None = None) -> float:
     """The first pass's gather radius, from the median pixel's footprint [m].
+
+    Args:
+        survey: what the camera sees.
+        unseen: the radius if it sees no diffuse surface, in a picture that can do without.
 
     Raises:
         SettingsError: no pixel sees a diffuse surface to measure it on.
     """
     if len(survey.widths) == 0:
+        if unseen is not None:
+            return unseen
         raise SettingsError(
             "radius", None, "a radius in metres, since the camera sees no diffuse surface"
         )
