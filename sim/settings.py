@@ -43,11 +43,11 @@ PRESETS: Final[dict[str, dict[str, float]]] = {
 """Photons and passes of each preset, in terms of the scene's own or the program's defaults.
 
 Placed by what two passes of prism, lens and ball cost, and by the two parts of their noise as
-`Accuracy` counts it: the camera's, 4.0, 1.5 and 1.6 %, and the photons', 0.4, 0.3 and 0.8 % with the
-scenes' own numbers. The draft takes 0.3 of the standard's CPU time and leaves 1.5 to 1.9 times its
-noise. Photons limit none of them: 4 times as many in each pass would take prism 3.0 times the time
-for 0.995 of its noise. So the reference takes 16 times the passes, for a quarter of the noise, and
-for 0.4 of the bias, which goes with the radius² and so as passes^(α - 1).
+`Accuracy` counts it: the camera's, 4.0, 1.5 and 1.6 %, and the photons', 0.4, 0.3 and 0.8 % with
+the scenes' own numbers. The draft takes 0.3 of the standard's CPU time and leaves 1.5 to 1.9 times
+its noise. Photons limit none of them: 4 times as many in each pass would take prism 3.0 times the
+time for 0.995 of its noise. So the reference takes 16 times the passes, for a quarter of the noise,
+and for 0.4 of the bias, which goes with the radius² and so as passes^(α - 1).
 """
 
 DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256, "bounces": 0}
