@@ -31,6 +31,7 @@ from scenes.metals import MetalTable
 from scenes.objects import SceneObject
 from scenes.reflectance import ReflectanceTable
 from scenes.scene import RenderDefaults, Scene
+from scenes.sensors import IrradianceSensor, RaySensor
 from scenes.shapes import (
     Box,
     Disk,
@@ -64,6 +65,7 @@ __all__ = [
     "Film",
     "HeightField",
     "InternalTransmittance",
+    "IrradianceSensor",
     "Lambertian",
     "Laser",
     "Lens",
@@ -79,6 +81,7 @@ __all__ = [
     "Polyhedron",
     "Prism",
     "Problem",
+    "RaySensor",
     "Rectangle",
     "RectangleLamp",
     "ReflectanceTable",

@@ -36,30 +36,24 @@ from sim.launch import load_kernels
 from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
-from sim.photons.photon_batch import PhotonBatch
-from sim.photons.photon_map import (
-    INDIRECT_KEPT,
-    INDIRECT_WIDTH,
-    PhotonMap,
-    build_photon_map,
-    make_collect,
-    make_reorder,
-)
+from sim.photons.photon_map import make_collect, make_reorder
+from sim.photons.photon_maps import PhotonMaps, build_photon_maps
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
-from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
+from sim.sensors.origin import Origin
+from sim.sensors.pass_crossings import PassCrossings
+from sim.sensors.readings import read_sensors
+from sim.sensors.sensor_bank import SensorBank, compile_sensors
+from sim.sensors.tally import SensorTally
 from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
 
 __all__ = ["compile_lamps_for", "gather_radius", "kernels_of", "radius_shrinkage", "render"]
-
-_THINNING_KEY = 0x7411
-"""Apart from every stream's number."""
 
 FOOTPRINTS_A_RADIUS = 2.0
 """The first pass gathers over a disc this many pixel widths in radius."""
@@ -106,24 +100,31 @@ def render(
             passes=plan.passes,
         )
         radius = plan.radius or gather_radius(survey)
-    studio = _Studio(compiled, lamps, receivers, camera, plan, radius, watch)
+        sensors = compile_sensors(compiled)
+    studio = _Studio(compiled, lamps, receivers, camera, sensors, plan, radius, watch)
+    tally = SensorTally(sensors) if sensors is not None else None
     books = []
     rule = StopRule(plan, watch)
     with closing(studio.photon_maps()) as photon_maps:
-        for pass_index, (maps, pass_books) in enumerate(photon_maps):
+        for pass_index, (maps, pass_books, crossings) in enumerate(photon_maps):
             books.append(pass_books)
+            if tally is not None and crossings is not None:
+                tally.add(crossings)
             with watch.timing("gather"):
                 studio.expose(film, maps, pass_index)
             if film.passes % film.turns == 0 and rule.ends_after(film):
                 break
+    energy, closed = EnergyBooks.mean(books), plan.closed(film.passes)
+    origin = Origin(scene=scene, settings=closed, energy=energy)
     return Picture(
         spectral_radiance=film.radiance(),
         standard_error=film.standard_error(),
         accuracy=film.accuracy(),
         edges_nm=edges_nm,
-        energy=EnergyBooks.mean(books),
+        energy=energy,
         scene=scene,
-        settings=plan.closed(film.passes),
+        settings=closed,
+        sensors=read_sensors(tally, origin) if tally is not None else {},
         stopping=rule.outcome,
         timings=watch.timings,
         features=choice.report(),
@@ -173,12 +174,8 @@ def gather_radius(survey: Survey) -> float:
     return FOOTPRINTS_A_RADIUS * float(np.median(survey.widths))
 
 
-@dataclass(frozen=True)
-class _Maps:
-    """One pass's photons: those that no diffuse surface has reflected, and those that one has."""
-
-    straight: PhotonMap
-    bounced: PhotonMap | None
+_Pass = tuple[PhotonMaps, EnergyBooks, PassCrossings | None]
+"""One pass: its photons in maps, where its energy went, and what sensors have seen of it."""
 
 
 @dataclass(frozen=True)
@@ -189,12 +186,13 @@ class _Studio:
     lamps: Lamps
     receivers: Any
     camera: Any
+    sensors: SensorBank | None
     plan: ResolvedSettings
     radius: float
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[tuple[_Maps, EnergyBooks], None, None]:
-        """The photon map of each pass, in order, and its energy books.
+    def photon_maps(self) -> Generator[_Pass, None, None]:
+        """Each pass, in order.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
         and would leave the other cores idle.
@@ -211,10 +209,8 @@ class _Studio:
             finally:
                 stop.set()
 
-    def _photon_map(
-        self, pass_index: int, stop: threading.Event
-    ) -> tuple[_Maps, EnergyBooks]:
-        """Emit and trace the photons of one pass, and map them, one map for those that bounced."""
+    def _photon_map(self, pass_index: int, stop: threading.Event) -> _Pass:
+        """Emit and trace the photons of one pass, and map them."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
                 self.compiled,
@@ -224,38 +220,28 @@ class _Studio:
                 max_interactions=self.plan.max_interactions,
                 threads=self.plan.threads,
                 store_direct=self.plan.direct_light == "photons",
+                sensors=self.sensors,
                 bounces=self.plan.bounces,
                 stop=stop,
                 on_done=self.watch.count_photons,
             )
         radius = self.radius * radius_shrinkage(pass_index, self.plan.alpha)
         with self.watch.timing("build photon map"):
-            if not self.compiled.features.interreflection:
-                return _Maps(self._sorted(batch, radius, stop), None), batch.books
-            first = fold_key(self.plan.seed, pass_index, _THINNING_KEY) % INDIRECT_KEPT
-            straight, bounced = batch.parted(every=INDIRECT_KEPT, first=first)
-            maps = _Maps(
-                self._sorted(straight, radius, stop),
-                self._sorted(bounced, INDIRECT_WIDTH * radius, stop),
+            maps = build_photon_maps(
+                self.compiled, batch, self.receivers, radius, seed=self.plan.seed,
+                pass_index=pass_index, threads=self.plan.threads, stop=stop,
             )
-        return maps, batch.books
+        return maps, batch.books, batch.crossings
 
-    def _sorted(self, batch: PhotonBatch, radius: float, stop: threading.Event) -> PhotonMap:
-        """The map of a batch."""
-        return build_photon_map(
-            self.compiled, batch, self.receivers, radius, threads=self.plan.threads, stop=stop
-        )
-
-    def expose(self, film: Film, maps: _Maps, pass_index: int) -> None:
+    def expose(self, film: Film, maps: PhotonMaps, pass_index: int) -> None:
         """Expose the film to one pass."""
         self.watch.pass_index = pass_index
         lights = compose_lights(
             self.plan.precision,
-            maps.straight,
+            maps,
             self.receivers,
             self.lamps,
             direct=self.plan.direct_light == "lamps",
-            bounced=maps.bounced,
         )
         expose(
             film,

@@ -38,7 +38,7 @@ from sim.scene_structs import (
 )
 from spectra import Medium
 
-__all__ = ["CompiledScene", "compile_scene", "find_origin"]
+__all__ = ["CompiledScene", "bounding_radius", "compile_scene", "find_origin"]
 
 FloatArray = npt.NDArray[np.float64]
 Row = tuple[Any, ...]
@@ -81,17 +81,24 @@ class CompiledScene:
 
     @property
     def bounding_radius(self) -> float:
-        """Radius about the local origin that holds every finite object [m]; 1 if there is none."""
-        return bounding_radius(self.scene, self.origin)
+        """Radius about the local origin that holds every finite object and sensor [m].
+
+        It is 1 if there is none.
+        """
+        return bounding_radius(self.scene, self.origin, with_sensors=True)
 
 
 def find_origin(scene: scenes.Scene) -> FloatArray:
-    """Centre of the finite objects' bounding box, (3,) [m]; the world's origin if there is none."""
+    """Centre of the finite objects' bounding box, (3,) [m].
+
+    Without any it is that of the sensors, and without these the world's origin.
+    """
     spheres = [
         item.shape.bounding_sphere()
         for item in scene.objects
         if not isinstance(item.shape, scenes.Plane)
     ]
+    spheres = spheres or [sensor.shape.bounding_sphere() for sensor in scene.sensors]
     if not spheres:
         return np.zeros(3)
     low = np.min([np.asarray(centre) - radius for centre, radius in spheres], axis=0)
@@ -100,13 +107,22 @@ def find_origin(scene: scenes.Scene) -> FloatArray:
     return middle
 
 
-def bounding_radius(scene: scenes.Scene, origin: FloatArray) -> float:
-    """Radius about `origin` that holds every finite object [m]; 1 if there is none."""
+def bounding_radius(
+    scene: scenes.Scene, origin: FloatArray, *, with_sensors: bool = False
+) -> float:
+    """Radius about `origin` that holds every finite object [m]; 1 if there is none.
+
+    Args:
+        scene: the scene.
+        origin: (3,) [m].
+        with_sensors: sensors count as objects: light must be able to reach them.
+    """
+    items = (*scene.objects, *(scene.sensors if with_sensors else ()))
     reach = [
         float(np.linalg.norm(np.subtract(centre, origin))) + radius
         for centre, radius in (
             item.shape.bounding_sphere()
-            for item in scene.objects
+            for item in items
             if not isinstance(item.shape, scenes.Plane)
         )
     ]

@@ -9,6 +9,7 @@ import sim.features.lamps
 import sim.features.light
 import sim.features.matter
 import sim.features.media
+import sim.features.sensors
 import sim.features.shapes  # noqa: F401 (importing registers)
 from sim.features.flags import Features
 from sim.features.plan import Decision, FeaturePlan, find_features, judge_features, plan_features

@@ -28,6 +28,7 @@ class Features:
         undispersed_photons: photons that no dispersion has touched can be in the map.
         direct_light: shadow rays find what comes straight from the lamps.
         beams, sphere_lamps, rectangle_lamps: which extended lamps shadow rays can lead to.
+        sensors: there are sensors that light can cross.
         media_count: how many media there are, the ambient one among them. A size, no feature.
         method: how light is followed. A choice of the caller's, no feature.
     """
@@ -53,5 +54,6 @@ class Features:
     beams: bool = True
     sphere_lamps: bool = True
     rectangle_lamps: bool = True
+    sensors: bool = True
     media_count: int = 1
     method: Method = DEFAULT_METHOD

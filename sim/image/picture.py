@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from scenes import Scene
     from sim.image.accuracy import Accuracy
     from sim.photons.energy import EnergyBooks
+    from sim.sensors.readings import Readings
     from sim.settings import ResolvedSettings
 
 __all__ = ["Picture"]
@@ -41,6 +42,7 @@ class Picture:
         energy: Where the emitted flux went [W].
         scene: The scene that was rendered.
         settings: The settings that render it again, resolved: with the passes that there were.
+        sensors: What the scene's sensors have measured, by their names.
         stopping: Why there were no more: "all passes", "target error" or "time budget".
         timings: Seconds that each stage took.
         features: What the kernels could do and could not, and what that can cost, ready for JSON.
@@ -53,6 +55,7 @@ class Picture:
     energy: EnergyBooks
     scene: Scene
     settings: ResolvedSettings
+    sensors: Readings = field(default_factory=dict)
     stopping: str = "all passes"
     timings: dict[str, float] = field(default_factory=dict)
     features: dict[str, Any] = field(default_factory=dict)

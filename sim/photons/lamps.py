@@ -8,7 +8,7 @@ import numpy.typing as npt
 import warp as wp
 
 import scenes
-from sim.photons.aiming import Aim, Guide, View, plan_photons
+from sim.photons.aiming import Aim, Guide, View, aim_at_sensors, plan_photons
 from sim.photons.lamp_structs import (
     AIM_CELLS,
     BEAM,
@@ -85,9 +85,11 @@ def compile_lamps(
         scenes.SceneError: no emitter shines inside the film's wavelengths.
     """
     shining = _find_shining(compiled.scene, edges_nm)
+    emitters = [(emitter, flux) for emitter, _, flux in shining]
     if guide is None:
-        emitters = [(emitter, flux) for emitter, _, flux in shining]
         guide = plan_photons(compiled, emitters, view, direct=direct)
+    else:
+        guide = aim_at_sensors(compiled, emitters, guide)
     counts = _share(photons, list(guide.shares))
     tables = _Tables()
     for (emitter, spectrum, flux), aims, count in zip(shining, guide.aims, counts, strict=True):

@@ -30,6 +30,7 @@ from sim.photons.photon_structs import (
 from sim.sampling.counter import hash64, to_unit
 from sim.sampling.directions import sample_cosine_hemisphere, to_world
 from sim.sampling.roulette import choose_branches, play_roulette
+from sim.sensors.crossing import make_record_crossings
 from sim.transport import (
     EVENT_ABSORB,
     EVENT_BOUNDARY,
@@ -62,10 +63,12 @@ def make_follow(precision: str, features: Features) -> object:
     transport = make_transport(precision, features)
     real, vec3, scatter = transport.real, transport.vec3, transport.scatter
     media_indices, split = transport.media_indices, transport.split
+    absorption_of = transport.absorption_of
     scene_type, ray_type, hit_type = transport.Scene, transport.Ray, transport.Hit
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
     intersect, facet_toward = transport.intersect, transport.facet_toward
+    record_crossings = make_record_crossings(precision)
     both_branches = features.method.branching == "weights"
     losses = features.absorption or features.finishes
 
@@ -127,6 +130,14 @@ def make_follow(precision: str, features: Features) -> object:
         step = int(0)
         while step < job.max_interactions:
             met = scatter(scene, ray, hit, indices)
+            if wp.static(features.sensors):
+                alpha = real(0.0)
+                if wp.static(features.absorption):
+                    alpha = absorption_of(indices, met.medium)
+                record_crossings(
+                    job, ray, hit.t, alpha, wavelength_nm, flux, history,
+                    draws + wp.uint64(step), out_photons, out_counts,
+                )
             history = mark_dispersed(history, met.dispersive)
             if wp.static(losses):
                 lost = flux * met.absorbed
