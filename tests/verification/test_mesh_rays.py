@@ -141,7 +141,9 @@ def test_a_mirror_of_smooth_triangles_sends_no_light_behind_itself(tmp_path) -> 
     mesh = scenes.Mesh(position=(0.0, 0.0, 0.0), file=file)
     ball = scenes.Sphere(position=(0.0, 0.0, 0.0), radius=1.0)
     rng = np.random.default_rng(5)
-    r, phi = np.sqrt(rng.uniform(size=600)), rng.uniform(0.0, 2.0 * np.pi, 600)
+    # Half of the rays where it can happen: where −d·n is less than half that of the facet.
+    r = np.sqrt(np.where(np.arange(600) < 300, rng.uniform(size=600), rng.uniform(0.99, 1.0, 600)))
+    phi = rng.uniform(0.0, 2.0 * np.pi, 600)
     origins = np.stack([r * np.cos(phi), r * np.sin(phi), np.full(600, -3.0)], axis=1)
     turn = scenes.rotation_matrix((31.0, 17.0, 5.0))
     origins, directions = origins @ turn.T, np.tile(turn[:, 2], (600, 1))
@@ -156,7 +158,7 @@ def test_a_mirror_of_smooth_triangles_sends_no_light_behind_itself(tmp_path) -> 
             assert path.events == exact.events
             off = np.linalg.norm(path.directions[-1] - exact.directions[-1])
             assert off < h**2 / abs(np.dot(exact.points[1], exact.directions[0]))
-    assert 5 < limb.sum() < 300
+    assert 300 < limb.sum() < 400
 
 
 def test_light_in_the_mesh_of_a_box_is_reflected_totally_as_in_the_box(tmp_path) -> None:
