@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from scenes.emitters import AnyEmitter, Emitter
+from scenes.endless import endless_problems
 from scenes.errors import Problem
 from scenes.film import Film
 from scenes.materials import Dielectric, Metal
@@ -68,6 +69,7 @@ def cross_problems(
         *bin_problems(film, sensors),
         *_range_problems(used_ranges_nm(film, list(emitters.values())), ambient, objects),
         *overlap_problems(objects),
+        *endless_problems(ambient, objects, emitters),
     ]
 
 

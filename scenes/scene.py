@@ -14,7 +14,7 @@ from pydantic import (
 
 from scenes.camera import Camera
 from scenes.checks import cross_problems
-from scenes.emitters import AnyEmitter
+from scenes.emitters import AnyEmitter, Glowing
 from scenes.errors import Problem, SceneError, refusal
 from scenes.fields import Count, Size, is_file
 from scenes.film import Film
@@ -97,14 +97,18 @@ class Scene(SceneModel):
         """Make sure that a picture can be taken.
 
         Raises:
-            SceneError: if camera, emitters, light of recorded wavelengths or receivers are missing.
+            SceneError: if camera, emitters, light of recorded wavelengths or what shows it are
+                missing.
         """
         problems = []
         if self.camera is None:
             problems.append(_lacking("camera", "a table [camera] with position and look_at"))
         problems += self._dark("a picture")
-        if not any(isinstance(one.material, Lambertian) for one in self.objects):
-            allowed = "at least one [[objects]] with a lambertian material, to receive light"
+        receives = any(isinstance(one.material, Lambertian) for one in self.objects)
+        shows = any(isinstance(one, Glowing) and one.visible for one in self.emitters)
+        if not receives and not shows:
+            allowed = "at least one [[objects]] with a lambertian material, to receive light,"
+            allowed += " or a lamp that can be seen"
             problems.append(_lacking("objects", allowed))
         if problems:
             raise SceneError(self.source_name, problems)
@@ -165,6 +169,12 @@ class Scene(SceneModel):
             emitters=dict(enumerate(self.emitters)),
             sensors=dict(enumerate(self.sensors)),
         )
+        stops = self.film.exposure_stops
+        if stops is not None and self.camera is not None and self.camera.exposure is not None:
+            allowed = "left out where the camera has an exposure"
+            problems.append(
+                Problem("film.exposure_stops", f"must be {allowed}", stops, allowed)
+            )
         if problems:
             raise refusal(*problems)
         return self

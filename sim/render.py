@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 import scenes
+from scenes.emitters import DistantEmitter
 from sim.canary import choose_kernels
 from sim.device import start_device
 from sim.errors import SettingsError
@@ -99,7 +100,7 @@ def render(
             scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device,
             passes=plan.passes,
         )
-        radius = plan.radius or gather_radius(survey)
+        radius = plan.radius or gather_radius(survey, unseen=_radius_unseen(compiled))
         sensors = compile_sensors(compiled)
     studio = _Studio(compiled, lamps, receivers, camera, sensors, plan, radius, watch)
     tally = SensorTally(sensors) if sensors is not None else None
@@ -138,15 +139,20 @@ def kernels_of(precision: str, features: Features) -> list[Any]:
         *(make(precision, features) for make in special),
         make_collect(precision),
         make_reorder(precision),
-        make_retrace_emission(precision, features.method.sampler),
+        make_retrace_emission(precision, features),
     ]
 
 
 def compile_lamps_for(
     compiled: CompiledScene, survey: Survey, plan: ResolvedSettings
 ) -> Lamps:
-    """The lamps, with photons for what they have to show: all light, or what has met glass."""
+    """The lamps, with photons for what they have to show: all light, or what has met glass.
+
+    Raises:
+        SettingsError: there would have to be photons without end.
+    """
     edges_nm = np.asarray(compiled.scene.film.edges_nm, dtype=np.float64)
+    _refuse_endless_light(compiled.scene, plan)
     if plan.direct_light == "photons":
         return compile_lamps(compiled, edges_nm, plan.photons, view=survey)
     return compile_guided_lamps(
@@ -155,19 +161,45 @@ def compile_lamps_for(
     )
 
 
+def _refuse_endless_light(scene: scenes.Scene, plan: ResolvedSettings) -> None:
+    """Photons from afar come to a sphere around the scene; an endless plane lies beyond it too.
+
+    Shadow rays from the plane to the sky have no such limit.
+    """
+    distant = [one.name for one in scene.emitters if isinstance(one, DistantEmitter)]
+    endless = [one.name for one in scene.objects if isinstance(one.shape, scenes.Plane)]
+    if distant and endless:
+        reason = f"for {distant[0]} is infinitely far away, and {endless[0]} has no end"
+        if plan.direct_light == "photons":
+            raise SettingsError("direct_light", "photons", f'"lamps", {reason}')
+        if plan.bounces > 0:
+            raise SettingsError("bounces", plan.bounces, f"0, {reason}")
+
+
 def radius_shrinkage(pass_index: int, alpha: float) -> float:
     """Radius of a pass relative to the first one's (Knaus & Zwicker 2011, eq. 15)."""
     i = np.arange(1.0, pass_index + 1.0)
     return float(np.sqrt(np.prod((i + alpha) / (i + 1.0))))
 
 
-def gather_radius(survey: Survey) -> float:
+def _radius_unseen(compiled: CompiledScene) -> float | None:
+    """A radius for a picture of lamps alone, on which nothing depends as far as one can tell."""
+    return 0.01 * compiled.bounding_radius if compiled.features.visible_lamps else None
+
+
+def gather_radius(survey: Survey, *, unseen: float | None = None) -> float:
     """The first pass's gather radius, from the median pixel's footprint [m].
+
+    Args:
+        survey: what the camera sees.
+        unseen: the radius if it sees no diffuse surface, in a picture that can do without.
 
     Raises:
         SettingsError: no pixel sees a diffuse surface to measure it on.
     """
     if len(survey.widths) == 0:
+        if unseen is not None:
+            return unseen
         raise SettingsError(
             "radius", None, "a radius in metres, since the camera sees no diffuse surface"
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from scenes.emitters import LocalEmitter
 from scenes.materials import Dielectric
 from scenes.shapes import Plane
 from sim.diagram.outlines import emitter_outline, shape_outline
@@ -86,7 +87,8 @@ def _limits(
     curves = [shape_outline(item.shape, toward) for item in scene.objects if item.shape.is_closed]
     solids = [curve for curve in curves if curve is not None]
     starts = [path.points[:1] for path in paths]
-    starts = starts or [np.array([emitter.position]) for emitter in scene.emitters]
+    near = [one for one in scene.emitters if isinstance(one, LocalEmitter)]
+    starts = starts or [np.array([emitter.position]) for emitter in near]
     core = view.project(np.concatenate([*solids, *starts, np.empty((0, 3))]))
     if len(core) == 0:
         return np.array([-1.0, -1.0]), np.array([1.0, 1.0])
@@ -149,6 +151,8 @@ def _draw_lamps(axes: Axes, scene: Scene, view: View) -> None:
     from matplotlib.patches import Polygon
 
     for emitter in scene.emitters:
+        if not isinstance(emitter, LocalEmitter):
+            continue  # what is infinitely far away has no place in the diagram
         outline = emitter_outline(emitter, view.toward_viewer)
         if outline is None:
             x, y = view.project(np.array(emitter.position))

@@ -5,6 +5,7 @@ by them; `flags` is what kernels ask.
 """
 
 import sim.features.arithmetic
+import sim.features.camera
 import sim.features.lamps
 import sim.features.light
 import sim.features.matter

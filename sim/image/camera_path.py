@@ -27,6 +27,7 @@ from sim.features import Features
 from sim.image.camera import make_camera_functions, make_camera_struct
 from sim.image.gather import make_gather
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
+from sim.image.visible_lamps import make_see_lamps
 from sim.sampling.counter import hash64
 from sim.sampling.kronecker import r1_point, r2_point
 from sim.sampling.roulette import choose_branches
@@ -80,9 +81,11 @@ def make_render_camera(precision: str, features: Features) -> Any:
     scene_type, ray_type = transport.Scene, transport.Ray
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
-    look = make_camera_functions(precision)
+    seeing = make_camera_functions(precision, features)
+    look_through, place_in_pixel = seeing.look_through, seeing.place_in_pixel
     losses = features.absorption or features.finishes
     gather = make_gather(precision, features)
+    see_lamps = make_see_lamps(precision, features)
 
     @wp.func
     def follow(
@@ -122,6 +125,13 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 dispersed = stack_dispersed[depth]
                 alive = bool(True)
             met = interact(scene, ray, indices)
+            if wp.static(features.visible_lamps):
+                parted = int(dispersed)
+                if wp.static(features.absorption):
+                    parted = parted | scene.media[met.medium].tints
+                if (sight.band == ALL_BANDS) != (parted == 1):
+                    scale = throughput / lights.receivers.band_width_nm
+                    see_lamps(lights, ray, met, sight, scale, sample)
             if wp.static(losses):
                 throughput -= throughput * met.absorbed
             if met.dispersive == 1:
@@ -183,13 +193,16 @@ def make_render_camera(precision: str, features: Features) -> Any:
         # Spread over the turns of a round, and drawn anew for the next one: rounds are replicates.
         key = hash64(hash64(film.key, wp.uint64(pixel)), wp.uint64(film.round))
         turn = wp.uint32(film.turn)
-        x, y = r2_point(key, turn, receivers.band_width_nm)
+        ux, uy = r2_point(key, turn, receivers.band_width_nm)
+        x, y = place_in_pixel(camera, ux, uy)
         inside_band = r1_point(key + wp.uint64(1), turn, receivers.band_width_nm)
-        ray = ray_type()
-        ray.origin = camera.position
-        ray.direction = look(
-            camera, real(pixel % camera.width) + x, real(pixel // camera.width) + y
+        u0, u1 = r2_point(key + wp.uint64(4), turn, receivers.band_width_nm)
+        origin, direction = look_through(
+            camera, real(pixel % camera.width) + x, real(pixel // camera.width) + y, u0, u1
         )
+        ray = ray_type()
+        ray.origin = origin
+        ray.direction = direction
         ray.prim = -1
         ray.face = -1
         ray.prim2 = -1

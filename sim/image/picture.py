@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.atomic_file import write_whole
-from sim.image.exposure import automatic_stops
+from sim.image.exposure import automatic_stops, lamp_level, scene_stops
 from sim.image.exr import encode_exr
 from sim.image.png import encode_png
 from spectra.observer import observer
@@ -81,12 +81,14 @@ class Picture:
 
     @cached_property
     def exposure_stops(self) -> float:
-        """The film's exposure [stops]; automatic when the scene leaves it open.
+        """The film's or the camera's exposure [stops]; automatic when the scene leaves it open.
 
         At e stops a white of 683 · 2⁻ᵉ cd/m² is developed to full white.
         """
-        stops = self.scene.film.exposure_stops
-        return automatic_stops(self.linear_rgb) if stops is None else float(stops)
+        stops = scene_stops(self.scene)
+        if stops is None:
+            return automatic_stops(self.linear_rgb, lamp_level(self.scene))
+        return stops
 
     @cached_property
     def srgb(self) -> NDArray[np.uint8]:

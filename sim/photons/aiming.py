@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import scenes
+from scenes.emitters import DistantEmitter
 from sim.photons.lamp_structs import AIM_AREA, AIM_BASE, AIM_CELLS, AIM_CONE
 from sim.scene_data import CompiledScene
 from sim.sensors.frames import sensor_frame, sensor_half
@@ -119,7 +120,7 @@ def plan_photons(
         return Guide(tuple(fluxes), aimed)
     if not direct:
         fluxes = [
-            flux * flux_to_glass(emitter, aims, compiled.to_local(emitter.position))
+            flux * flux_to_glass(compiled, emitter, aims)
             for (emitter, flux), aims in zip(emitters, aimed, strict=True)
         ]
     total = sum(fluxes) or 1.0
@@ -193,19 +194,22 @@ def find_aims(
     return aims + (_sensors(compiled, RECEIVER_SHARE / total) if measures else [])
 
 
-def flux_to_glass(emitter: Any, aims: tuple[Aim, ...], centre: FloatArray) -> float:
+def flux_to_glass(compiled: CompiledScene, emitter: Any, aims: tuple[Aim, ...]) -> float:
     """About how much of a lamp's flux meets glass that can be aimed at, as a fraction.
 
     Args:
+        compiled: the scene.
         emitter: the lamp.
         aims: what its photons are aimed at.
-        centre: (3,) where the lamp is, in the local frame [m].
     """
     if isinstance(emitter, scenes.Beam):
         return 1.0
     total = 0.0
     for aim in (one for one in aims if one.specular):
-        offset = aim.centre - centre
+        if isinstance(emitter, DistantEmitter):
+            total += (aim.radius / compiled.bounding_radius) ** 2
+            continue
+        offset = aim.centre - compiled.to_local(emitter.position)
         distance = max(float(np.linalg.norm(offset)), aim.radius)
         part = 0.5 * (1.0 - np.sqrt(1.0 - (aim.radius / distance) ** 2))  # Ω/4π of its cone
         if isinstance(emitter, scenes.RectangleLamp):

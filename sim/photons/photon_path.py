@@ -17,7 +17,7 @@ from sim.features import Features
 from sim.optics.dispersion import tabulated_index
 from sim.photons.emission import make_emission, make_wavelength_function
 from sim.photons.energy import BOOK_COLUMNS
-from sim.photons.lamp_structs import make_lamp_structs
+from sim.photons.lamp_structs import DISTANT, make_lamp_structs
 from sim.photons.photon_structs import (
     add_bounce,
     add_event,
@@ -269,12 +269,27 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     """Kernel `trace_photons(start, scene, lamps, job, photons, counts, books)`."""
     transport = make_transport(precision, features)
     real, scene_type, intersect = transport.real, transport.Scene, transport.intersect
-    lamps_type = make_lamp_structs(precision).Lamps
+    lamp_structs, ray_type = make_lamp_structs(precision), transport.Ray
+    lamps_type, emitter_type = lamp_structs.Lamps, lamp_structs.Emitter
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
-    emit = make_emission(precision, features.method.sampler)
+    emit = make_emission(precision, features)
     sample_wavelength = make_wavelength_function(precision)
     follow = make_follow(precision, features)
+
+    @wp.func
+    def is_shaded(scene: scene_type, emitter: emitter_type, ray: ray_type):
+        """Whether light from afar has met something endless before it comes near the scene."""
+        if emitter.kind != DISTANT:
+            return False
+        back = ray_type()
+        back.origin = ray.origin
+        back.direction = -ray.direction
+        back.prim = -1
+        back.face = -1
+        back.prim2 = -1
+        hit = intersect(scene, back)
+        return hit.prim >= 0
 
     @wp.func
     def trace_photon(
@@ -286,6 +301,10 @@ def make_trace_photons(precision: str, features: Features) -> Any:
             lamps, job.emitter, job.target, job.seed_row, index, job.key
         )
         flows = FLOWS()
+        if wp.static(features.distant_lamps and features.flats):
+            if is_shaded(scene, lamps.emitters[job.emitter], ray):
+                flows[2] = wp.float64(emitted)
+                return emitted, flows
         if emitted > real(0.0):
             # What meets a dispersive surface first is followed in several colours at once.
             colours = int(1)
