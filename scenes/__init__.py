@@ -9,6 +9,15 @@ wavelengths in nanometres (`…_nm`) and angles in degrees (`…_deg`); files ma
     60.0
 """
 
+from scenes.absorption import (
+    CoefficientTable,
+    DecadicAbsorption,
+    ExtinctionAbsorption,
+    ExtinctionTable,
+    InternalTransmittance,
+    NapierianAbsorption,
+    TransmittanceTable,
+)
 from scenes.camera import Camera
 from scenes.emission import Blackbody, Laser, Lines, SpectrumTable
 from scenes.emitters import Beam, Point, RectangleLamp, RoundProfile, SlitProfile, SphereLamp, Spot
@@ -16,9 +25,11 @@ from scenes.errors import Problem, SceneError
 from scenes.files import gallery, gallery_path, load, loads, schema
 from scenes.film import Film
 from scenes.frames import rotation_matrix
-from scenes.materials import Absorber, Dielectric, Lambertian, ReflectanceTable
+from scenes.materials import Absorber, Dielectric, Lambertian, Metal, Mirror
 from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMedium
+from scenes.metals import MetalTable
 from scenes.objects import SceneObject
+from scenes.reflectance import ReflectanceTable
 from scenes.scene import RenderDefaults, Scene
 from scenes.shapes import (
     Box,
@@ -39,15 +50,24 @@ __all__ = [
     "Box",
     "Camera",
     "CauchyMedium",
+    "CoefficientTable",
     "ConstantMedium",
+    "DecadicAbsorption",
     "Dielectric",
     "Disk",
+    "ExtinctionAbsorption",
+    "ExtinctionTable",
     "Film",
+    "InternalTransmittance",
     "Lambertian",
     "Laser",
     "Lens",
     "LensSurface",
     "Lines",
+    "Metal",
+    "MetalTable",
+    "Mirror",
+    "NapierianAbsorption",
     "Plane",
     "Point",
     "Polyhedron",
@@ -68,6 +88,7 @@ __all__ = [
     "SphereLamp",
     "Spot",
     "TableMedium",
+    "TransmittanceTable",
     "gallery",
     "gallery_path",
     "load",

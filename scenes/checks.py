@@ -10,14 +10,18 @@ from pydantic import TypeAdapter, ValidationError
 from scenes.emitters import AnyEmitter, Emitter
 from scenes.errors import Problem
 from scenes.film import Film
-from scenes.materials import Dielectric
+from scenes.materials import Dielectric, Metal
 from scenes.media import AMBIENT_NAMES, AmbientSpec, DescribedMedium, resolve_medium
 from scenes.objects import SceneObject
+from scenes.overlap import overlap_problems
 from spectra import Medium, WavelengthOutOfRange, air_index
 
 __all__ = ["cross_problems", "cross_problems_of_valid_parts", "used_ranges_nm"]
 
 Interval = tuple[float, float]
+
+_Known = tuple[str, str, Interval]
+"""The path of a description in the file, what it describes, and its range of wavelengths [nm]."""
 
 _FILM: TypeAdapter[Any] = TypeAdapter(Film)
 _AMBIENT: TypeAdapter[Any] = TypeAdapter(AmbientSpec)
@@ -57,6 +61,7 @@ def cross_problems(
         *_repeated_names("objects", {i: one.name for i, one in objects.items()}),
         *_repeated_names("emitters", {i: one.name for i, one in emitters.items()}),
         *_range_problems(used_ranges_nm(film, list(emitters.values())), ambient, objects),
+        *overlap_problems(objects),
     ]
 
 
@@ -82,22 +87,54 @@ def _range_problems(
     surrounding = None if ambient in AMBIENT_NAMES else resolve_medium(ambient)
     if surrounding is not None:
         media["ambient"] = surrounding
-    problems = [
-        problem for path, medium in media.items() for problem in _uncovered(path, medium, used)
-    ]
+    known = [(path, medium.name, medium.wavelength_range_nm) for path, medium in media.items()]
+    known += [*_known_absorptions(media, objects), *_known_metals(objects)]
+    problems = [problem for one in known for problem in _uncovered(*one, used)]
     reference = surrounding.relative_to if surrounding is not None else ambient
     if reference != "reference" and any(one.relative_to != reference for one in media.values()):
         problems += _outside_air(used)
     return problems
 
 
-def _uncovered(path: str, medium: Medium, used: Sequence[Interval]) -> list[Problem]:
-    lowest, highest = medium.wavelength_range_nm
+def _known_absorptions(
+    media: Mapping[str, Medium], objects: Mapping[int, SceneObject]
+) -> list[_Known]:
+    """Where the media's absorptions are described, and for which wavelengths."""
+    beside = {
+        f"objects[{index}].material.medium": f"objects[{index}].material.absorption"
+        for index, one in objects.items()
+        if isinstance(one.material, Dielectric) and one.material.absorption is not None
+    }
+    return [
+        (
+            beside.get(path, f"{path}.absorption"),
+            "the absorption",
+            medium.absorption.wavelength_range_nm,
+        )
+        for path, medium in media.items()
+        if medium.absorption is not None
+    ]
+
+
+def _known_metals(objects: Mapping[int, SceneObject]) -> list[_Known]:
+    metals = {
+        index: one.material.resolved()
+        for index, one in objects.items()
+        if isinstance(one.material, Metal)
+    }
+    return [
+        (f"objects[{index}].material.metal", metal.name, metal.wavelength_range_nm)
+        for index, metal in metals.items()
+    ]
+
+
+def _uncovered(path: str, name: str, range_nm: Interval, used: Sequence[Interval]) -> list[Problem]:
+    lowest, highest = range_nm
     for low, high in used:
         if low < lowest or high > highest:
             allowed = f"wavelengths between {lowest:g} and {highest:g} nm"
             message = (
-                f"{medium.name} is known between {lowest:g} and {highest:g} nm,"
+                f"{name} is known between {lowest:g} and {highest:g} nm,"
                 f" but the emitters and the film use {low:g} to {high:g} nm;"
                 " narrow the film's bands or the emitters' spectra"
             )

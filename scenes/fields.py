@@ -14,6 +14,7 @@ from pydantic import AfterValidator, AllowInfNan, Field, Strict, ValidationInfo
 from scenes.errors import Problem, refusal
 
 __all__ = [
+    "MAX_INVERSE_LENGTH_PER_M",
     "MAX_LENGTH_M",
     "MIN_SIZE_M",
     "UNITS_PER_METRE",
@@ -23,6 +24,7 @@ __all__ = [
     "Curvature",
     "Degrees",
     "Direction",
+    "InverseLength",
     "NonNegative",
     "Number",
     "Position",
@@ -41,6 +43,9 @@ UNITS_PER_METRE: Final = {"m": 1.0, "mm": 1000.0}
 
 MAX_LENGTH_M: Final = 1e9
 """No coordinate or size may exceed this: squares and cubes of lengths must stay finite."""
+
+MAX_INVERSE_LENGTH_PER_M: Final = 1e30
+"""No absorption coefficient may exceed this: nothing passes an atom's layer of it."""
 
 MIN_SIZE_M: Final = 1e-9
 """No size may be smaller: geometrical optics ended long before a nanometre."""
@@ -103,6 +108,15 @@ def _curvature_per_m(curvature: float, info: ValidationInfo) -> float:
     return curvature_per_m
 
 
+def _per_metre(per_length: float, info: ValidationInfo) -> float:
+    per_metre = per_length * UNITS_PER_METRE[_unit(info)]
+    if per_metre > MAX_INVERSE_LENGTH_PER_M:
+        highest = MAX_INVERSE_LENGTH_PER_M / UNITS_PER_METRE[_unit(info)]
+        allowed = f"at most {highest:g} per {_unit(info)}"
+        raise refusal(Problem("", f"must be {allowed}, is {per_length:g}", per_length, allowed))
+    return per_metre
+
+
 def _normalised(direction: tuple[float, float, float]) -> tuple[float, float, float]:
     largest = max(abs(component) for component in direction)
     if largest == 0.0:
@@ -144,6 +158,9 @@ SignedRadius = Annotated[Number, AfterValidator(_signed_radius_m)]
 
 Curvature = Annotated[Number, AfterValidator(_curvature_per_m)]
 """The inverse of a signed radius [1/m]; in a file in mm it is written in 1/mm."""
+
+InverseLength = Annotated[Number, Field(ge=0), AfterValidator(_per_metre)]
+"""A coefficient per length, 0 or more [1/m]; in a file in mm it is written in 1/mm."""
 
 Position = tuple[Coordinate, Coordinate, Coordinate]
 """A point [m]."""

@@ -4,62 +4,98 @@ from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Strict, model_validator
 
-from scenes.columns import refuse_uneven_columns
-from scenes.fields import Number, Wavelength
-from scenes.media import MediumSpec, resolve_medium
-from scenes.model import SceneModel, plain_or_table
-from spectra import Medium
+from scenes.absorption import AbsorptionSpec
+from scenes.errors import Problem, refusal
+from scenes.media import DescribedMedium, MediumSpec, coloured, resolve_medium
+from scenes.metals import MetalSpec, resolve_metal
+from scenes.model import SceneModel
+from scenes.reflectance import Reflectance, ReflectanceTable, reflectance_at
+from spectra import Conductor, Medium
 
-__all__ = ["Absorber", "Dielectric", "Lambertian", "Material", "ReflectanceTable"]
-
-_Fraction = Annotated[Number, Field(ge=0, le=1)]
+__all__ = ["Absorber", "Dielectric", "Lambertian", "Material", "Metal", "Mirror"]
 
 
 class Dielectric(SceneModel):
-    """A transparent medium fills the shape; the scene's ambient medium is outside."""
+    """A transparent medium fills the shape; outside is the ambient one, or another solid's."""
 
     type: Literal["dielectric"] = Field(default="dielectric", description="glass, water, …")
-    medium: MediumSpec = Field(description="name of a glass, or a table that describes a medium")
-
-    def resolved(self) -> Medium:
-        """The medium inside."""
-        return resolve_medium(self.medium)
-
-
-class ReflectanceTable(SceneModel):
-    """Reflectance against wavelength: linear between the entries, constant beyond them."""
-
-    wavelength_nm: tuple[Wavelength, ...] = Field(
-        min_length=1, max_length=10_000, description="wavelengths, strictly increasing [nm]"
+    medium: MediumSpec = Field(
+        description='name of a glass, "air" or "vacuum" (a bubble), or a table that describes a'
+        " medium"
     )
-    values: tuple[_Fraction, ...] = Field(
-        min_length=1, max_length=10_000, description="reflectance at each wavelength, 0 to 1"
+    absorption: AbsorptionSpec | None = Field(
+        default=None, description="what the medium takes of the light on its way; nothing if absent"
+    )
+    priority: Annotated[int, Strict(), Field(ge=-1000, le=1000)] = Field(
+        default=0,
+        description="where solids overlap, the one of the highest priority fills the space,"
+        " -1000 to 1000",
     )
 
     @model_validator(mode="after")
-    def _columns_match(self) -> Self:
-        refuse_uneven_columns(self.wavelength_nm, "values", self.values)
+    def _absorbs_once(self) -> Self:
+        described = self.medium.absorption if isinstance(self.medium, DescribedMedium) else None
+        if described is not None and self.absorption is not None:
+            allowed = "one absorption, here or in the medium's own table"
+            message = f"is given twice; allowed: {allowed}"
+            raise refusal(Problem("absorption", message, self.absorption, allowed))
         return self
+
+    def resolved(self) -> Medium:
+        """The medium inside, with its absorption."""
+        return coloured(resolve_medium(self.medium), self.absorption)
 
 
 class Lambertian(SceneModel):
     """Reflects diffusely, equally bright from everywhere; receives and shows photons."""
 
     type: Literal["lambertian"] = Field(default="lambertian", description="diffuse reflector")
-    reflectance: Annotated[
-        Annotated[_Fraction, Tag("<plain>")] | Annotated[ReflectanceTable, Tag("<table>")],
-        Discriminator(plain_or_table),
-    ] = Field(description="fraction of light reflected, 0 to 1, or a table against wavelength")
+    reflectance: Reflectance = Field(
+        description="fraction of light reflected, 0 to 1, or a table against wavelength"
+    )
 
     def reflectance_at(self, wavelength_nm: ArrayLike) -> NDArray[np.float64]:
         """Reflectance at wavelengths [nm], of the same shape, 0 to 1."""
-        wavelength = np.asarray(wavelength_nm, dtype=np.float64)
-        if isinstance(self.reflectance, ReflectanceTable):
-            table = self.reflectance
-            return np.interp(wavelength, table.wavelength_nm, table.values)
-        return np.full_like(wavelength, self.reflectance)
+        return reflectance_at(self.reflectance, wavelength_nm)
+
+
+class Mirror(SceneModel):
+    """Reflects like a mirror, the same share at any angle; the rest is swallowed."""
+
+    type: Literal["mirror"] = Field(default="mirror", description="ideal mirror")
+    reflectance: Reflectance = Field(
+        default=1.0,
+        description="fraction of light reflected, 0 to 1, or a table against wavelength",
+    )
+
+    def reflectance_at(self, wavelength_nm: ArrayLike) -> NDArray[np.float64]:
+        """Reflectance at wavelengths [nm], of the same shape, 0 to 1."""
+        return reflectance_at(self.reflectance, wavelength_nm)
+
+    @property
+    def is_coloured(self) -> bool:
+        """Whether what it reflects depends on the wavelength."""
+        return isinstance(self.reflectance, ReflectanceTable) and len(set(self.reflectance.values)) > 1
+
+
+class Metal(SceneModel):
+    """The polished surface of a metal: reflects as Fresnel says of its complex index."""
+
+    type: Literal["conductor"] = Field(default="conductor", description="polished metal")
+    metal: MetalSpec = Field(
+        description="gold, silver, aluminium, copper, or a table of the complex index"
+    )
+
+    @property
+    def is_coloured(self) -> bool:
+        """Whether what it reflects depends on the wavelength; all metals count as coloured."""
+        return True
+
+    def resolved(self) -> Conductor:
+        """The metal."""
+        return resolve_metal(self.metal)
 
 
 class Absorber(SceneModel):
@@ -68,5 +104,7 @@ class Absorber(SceneModel):
     type: Literal["absorber"] = Field(default="absorber", description="black")
 
 
-Material = Annotated[Dielectric | Lambertian | Absorber, Field(discriminator="type")]
+Material = Annotated[
+    Dielectric | Lambertian | Mirror | Metal | Absorber, Field(discriminator="type")
+]
 """Any material."""

@@ -1,11 +1,15 @@
 """Transparent media: by name from the glass catalogue, or described in the scene itself."""
 
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
 from typing import Annotated, Final, Literal, Self
 
 import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
-from pydantic_core import PydanticCustomError
 
+from scenes.absorption import AbsorptionSpec, DescribedAbsorption
 from scenes.columns import refuse_disorder, refuse_uneven_columns
 from scenes.errors import Problem, refusal
 from scenes.fields import WAVELENGTH_RANGE_NM, Number, Wavelength
@@ -24,6 +28,7 @@ from spectra import (
 
 __all__ = [
     "AMBIENT_NAMES",
+    "REFERENCE_MEDIA",
     "AmbientSpec",
     "CauchyMedium",
     "ConstantMedium",
@@ -32,6 +37,7 @@ __all__ = [
     "MediumSpec",
     "SellmeierMedium",
     "TableMedium",
+    "coloured",
     "resolve_medium",
 ]
 
@@ -55,6 +61,9 @@ class DescribedMedium(SceneModel):
 
     source: _Source = "described in the scene"
     relative_to: _RelativeTo = "air"
+    absorption: AbsorptionSpec | None = Field(
+        default=None, description="what the medium takes of the light on its way; nothing if absent"
+    )
 
     def _dispersion(self) -> Dispersion:
         raise NotImplementedError
@@ -64,13 +73,14 @@ class DescribedMedium(SceneModel):
 
     def resolved(self) -> Medium:
         """The medium, ready to be asked for its index at a wavelength."""
-        return Medium(
+        clear = Medium(
             name="medium described in the scene",
             dispersion=self._dispersion(),
             wavelength_range_nm=self._range_nm(),
             source=self.source,
             relative_to=self.relative_to,
         )
+        return coloured(clear, self.absorption)
 
     def _refuse_unphysical(self) -> None:
         """Refuse a formula without a positive index somewhere in its range.
@@ -174,29 +184,42 @@ class ConstantMedium(DescribedMedium):
         return Cauchy(a=(self.eta,))
 
 
-AMBIENT_NAMES: Final = ("reference", "air", "vacuum")
+_REFERENCES: Final[tuple[Literal["air", "vacuum"], ...]] = ("air", "vacuum")
+
+REFERENCE_MEDIA: Final[Mapping[str, Medium]] = MappingProxyType(
+    {
+        name: Medium(
+            name=name,
+            dispersion=Cauchy((1.0,)),
+            wavelength_range_nm=(0.0, math.inf),
+            source="the index is relative to it",
+            relative_to=name,
+        )
+        for name in _REFERENCES
+    }
+)
+"""What indices are measured against, as media: of index 1, each relative to itself."""
+
+AMBIENT_NAMES: Final = ("reference", *REFERENCE_MEDIA)
 """What can surround the objects, apart from a medium."""
 
 
-def _known_glass(name: str) -> str:
-    try:
-        glass(name)
-    except UnknownGlass as error:
-        allowed = f"{', '.join(glasses())}, or a table that describes the medium"
-        raise refusal(Problem("", str(error), name, allowed)) from None
-    return name
+def _known_medium(name: str) -> str:
+    return _known(name, tuple(REFERENCE_MEDIA))
 
 
 def _known_ambient(name: str) -> str:
-    if name in AMBIENT_NAMES:
+    return _known(name, AMBIENT_NAMES)
+
+
+def _known(name: str, other_names: tuple[str, ...]) -> str:
+    """A name that is one of `other_names` or a glass's."""
+    error = UnknownGlass(name, (*other_names, *glasses()))
+    if name in error.known:
         return name
-    try:
-        return _known_glass(name)
-    except PydanticCustomError:
-        error = UnknownGlass(name, (*AMBIENT_NAMES, *glasses()))
-        allowed = f"{', '.join(error.known)}, or a table that describes a medium"
-        message = f"{error}; {', '.join(AMBIENT_NAMES)} are allowed as well as a glass"
-        raise refusal(Problem("", message, name, allowed)) from None
+    allowed = f"{', '.join(error.known)}, or a table that describes the medium"
+    message = f"{error}; {', '.join(other_names)} are allowed as well as a glass"
+    raise refusal(Problem("", message, name, allowed))
 
 
 InlineMedium = Annotated[
@@ -205,11 +228,11 @@ InlineMedium = Annotated[
 """A table with a `type` that describes a medium."""
 
 MediumSpec = Annotated[
-    Annotated[str, AfterValidator(_known_glass), Tag("<plain>")]
+    Annotated[str, AfterValidator(_known_medium), Tag("<plain>")]
     | Annotated[InlineMedium, Tag("<table>")],
     Discriminator(plain_or_table),
 ]
-"""The exact name of a medium that `spectra.glass` knows, or a description."""
+"""The exact name of a medium that `spectra.glass` knows, "air", "vacuum", or a description."""
 
 AmbientSpec = Annotated[
     Annotated[str, AfterValidator(_known_ambient), Tag("<plain>")]
@@ -221,4 +244,13 @@ AmbientSpec = Annotated[
 
 def resolve_medium(medium: str | DescribedMedium) -> Medium:
     """The medium that a scene names or describes."""
-    return glass(medium) if isinstance(medium, str) else medium.resolved()
+    if isinstance(medium, DescribedMedium):
+        return medium.resolved()
+    return REFERENCE_MEDIA.get(medium) or glass(medium)
+
+
+def coloured(medium: Medium, absorption: DescribedAbsorption | None) -> Medium:
+    """The medium with an absorption; itself, if there is none."""
+    if absorption is None:
+        return medium
+    return replace(medium, absorption=absorption.resolved(medium.wavelength_range_nm))

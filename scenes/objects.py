@@ -22,7 +22,10 @@ class SceneObject(SceneModel):
     @model_validator(mode="after")
     def _medium_is_enclosed(self) -> Self:
         if isinstance(self.material, Dielectric) and not self.shape.is_closed:
-            allowed = "lambertian or absorber, or a closed shape: sphere, box, prism, lens, …"
+            allowed = (
+                "lambertian, mirror, conductor or absorber,"
+                " or a closed shape: sphere, box, prism, lens, …"
+            )
             message = (
                 f"a {self.shape.type} encloses no volume that a dielectric could fill;"
                 f" allowed: {allowed}"

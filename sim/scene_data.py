@@ -4,6 +4,7 @@ The scene is recentred on its finite objects, so that a bench a kilometre from i
 is traced with the digits of one at the origin. Results that carry positions add `origin` back.
 """
 
+import itertools
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
@@ -14,30 +15,35 @@ import warp as wp
 
 import scenes
 from scenes.frames import frame_about
-from sim.features import Features, Subject, find_features
+from sim.device_arrays import struct_array
+from sim.features import Features, find_features
 from sim.method import Method
-from sim.optics.dispersion import DISPERSION_COEFFICIENTS
 from sim.precision import precision_types
-from sim.scene_media import collect_media
+from sim.scene_media import SceneMedia, collect_media
+from sim.scene_neighbours import find_neighbours, touch_distance
+from sim.scene_optics import fill_optics
 from sim.scene_structs import (
     ABSORBER,
-    CAUCHY,
     DIELECTRIC,
     LAMBERTIAN,
-    SELLMEIER,
+    METAL,
+    MIRROR,
     SHAPE_FLAT,
     SHAPE_LENS,
     SHAPE_POLYHEDRON,
     SHAPE_SPHERE,
-    TABULATED,
     make_scene_structs,
 )
-from spectra import Cauchy, Medium, Sellmeier, Tabulated
+from spectra import Medium
 
 __all__ = ["CompiledScene", "compile_scene", "find_origin"]
 
 FloatArray = npt.NDArray[np.float64]
 Row = tuple[Any, ...]
+
+_NEARNESS = 4.0
+"""Objects whose shapes come within this many touches are asked at each vertex: more than one, for
+the rounding of their extents."""
 
 
 @dataclass(frozen=True)
@@ -74,15 +80,7 @@ class CompiledScene:
     @property
     def bounding_radius(self) -> float:
         """Radius about the local origin that holds every finite object [m]; 1 if there is none."""
-        reach = [
-            float(np.linalg.norm(self.to_local(centre))) + radius
-            for centre, radius in (
-                item.shape.bounding_sphere()
-                for item in self.scene.objects
-                if not isinstance(item.shape, scenes.Plane)
-            )
-        ]
-        return max(reach, default=1.0)
+        return bounding_radius(self.scene, self.origin)
 
 
 def find_origin(scene: scenes.Scene) -> FloatArray:
@@ -98,6 +96,19 @@ def find_origin(scene: scenes.Scene) -> FloatArray:
     high = np.max([np.asarray(centre) + radius for centre, radius in spheres], axis=0)
     middle: FloatArray = 0.5 * (low + high)
     return middle
+
+
+def bounding_radius(scene: scenes.Scene, origin: FloatArray) -> float:
+    """Radius about `origin` that holds every finite object [m]; 1 if there is none."""
+    reach = [
+        float(np.linalg.norm(np.subtract(centre, origin))) + radius
+        for centre, radius in (
+            item.shape.bounding_sphere()
+            for item in scene.objects
+            if not isinstance(item.shape, scenes.Plane)
+        )
+    ]
+    return max(reach, default=1.0)
 
 
 def compile_scene(
@@ -118,36 +129,26 @@ def compile_scene(
         method: how light is followed; None: as a rendering does, or as `features` say.
     """
     origin = find_origin(scene)
-    media, medium_of, air_powers = collect_media(scene)
+    media = collect_media(scene)
     if features is None:
-        features = find_features(scene, media, air_powers)
+        features = find_features(scene, media.media, media.air_powers)
     if method is not None:
         features = replace(features, method=method)
     structs = make_scene_structs(precision)
     data = structs.Scene()
     places = _fill_shapes(data, scene, origin, precision, device)
-    rows = [
-        (*place, *material)
-        for place, material in zip(
-            places, _materials(scene, media, medium_of, air_powers, features), strict=True
-        )
-    ]
+    touch = touch_distance(bounding_radius(scene, origin), precision)
+    near = [[] for _ in scene.objects]
+    if features.interfaces:
+        near = find_neighbours(scene, _NEARNESS * touch)
+    bodies = _bodies(media, scene, near, disperses=features.dispersion)
+    rows = [(*place, *body) for place, body in zip(places, bodies, strict=True)]
     data.bodies = struct_array(structs.Body, rows, device)
-    _fill_media(data, media, air_powers, precision, device)
-    return CompiledScene(scene, precision, device, features, tuple(media), origin, data)
-
-
-def struct_array(struct: Any, rows: list[Row], device: str) -> Any:
-    """A device array of `struct` from tuples in the order of its fields; never of length zero.
-
-    Warp's empty arrays have a null pointer; one zero element that no count mentions is simpler
-    than a guard at each use.
-    """
-    dtype = struct.numpy_dtype()
-    host = np.zeros(max(1, len(rows)), dtype=dtype)
-    for i, row in enumerate(rows):
-        host[i] = row
-    return wp.array(host, dtype=struct, device=device)
+    neighbours = np.array([*itertools.chain(*near), -1], dtype=np.int32)
+    data.neighbours = wp.array(neighbours, dtype=int, device=device)
+    data.touch = touch
+    fill_optics(data, media, precision, device, disperses=features.dispersion)
+    return CompiledScene(scene, precision, device, features, media.media, origin, data)
 
 
 def axis_frame(axis: tuple[float, float, float]) -> FloatArray:
@@ -222,55 +223,26 @@ def _lens_row(lens: scenes.Lens, centre: FloatArray, prim: int, precision: str) 
     )
 
 
-def _materials(
-    scene: scenes.Scene,
-    media: list[Medium],
-    medium_of: list[int],
-    air_powers: list[int],
-    features: Features,
-) -> list[tuple[int, int, int, int]]:
-    """Each object's material, media outside and inside, and whether its boundary disperses."""
-    varies = Subject(scene, tuple(media), tuple(air_powers)).varying_media
-    rows = []
-    for item, medium in zip(scene.objects, medium_of, strict=True):
-        if isinstance(item.material, scenes.Dielectric):
-            disperses = features.dispersion and (varies[medium] or varies[0])
-            rows.append((int(DIELECTRIC), 0, medium, int(disperses)))
-        elif isinstance(item.material, scenes.Lambertian):
-            rows.append((int(LAMBERTIAN), 0, 0, 0))
-        else:
-            rows.append((int(ABSORBER), 0, 0, 0))
-    return rows
-
-
-def _fill_media(
-    data: Any, media: list[Medium], air_powers: list[int], precision: str, device: str
-) -> None:
-    """Fill the dispersion coefficients and the knots and cubics of tables."""
-    types, structs = precision_types(precision), make_scene_structs(precision)
-    coefficients = np.zeros((len(media), DISPERSION_COEFFICIENTS))
-    knots: list[FloatArray] = []
-    cubics: list[FloatArray] = []
+def _bodies(
+    media: SceneMedia, scene: scenes.Scene, near: list[list[int]], *, disperses: bool
+) -> list[Row]:
+    """Each object's columns of a Body behind its shape's, see `sim.scene_structs`."""
     rows: list[Row] = []
-    for i, (medium, air_power) in enumerate(zip(media, air_powers, strict=True)):
-        formula = medium.dispersion
-        if isinstance(formula, Sellmeier):
-            count = len(formula.b)
-            coefficients[i, 0 : 2 * count : 2] = formula.b
-            coefficients[i, 1 : 2 * count : 2] = formula.c_um2
-            rows.append((int(SELLMEIER), 0, 0, air_power))
-        elif isinstance(formula, Cauchy):
-            coefficients[i, : len(formula.a)] = formula.a
-            rows.append((int(CAUCHY), 0, 0, air_power))
+    first = 0
+    for prim, item in enumerate(scene.objects):
+        material, medium, finish = item.material, media.medium_of[prim], media.finish_of[prim]
+        priority, varies = 0, False
+        if isinstance(material, scenes.Dielectric):
+            kind, priority = DIELECTRIC, material.priority
+            varies = media.varies[medium] or media.varies[0]
+        elif isinstance(material, scenes.Mirror | scenes.Metal):
+            kind = MIRROR if isinstance(material, scenes.Mirror) else METAL
+            varies = material.is_coloured
         else:
-            assert isinstance(formula, Tabulated)
-            first = sum(len(k) for k in knots)
-            knots.append(np.asarray(formula.knots_nm))
-            cubics.append(np.vstack([formula.coefficients, np.zeros(4)]))
-            rows.append((int(TABULATED), first, len(knots[-1]), air_power))
-    data.media = struct_array(structs.Medium, rows, device)
-    data.coefficients = wp.array(coefficients.astype(types.dtype), dtype=types.real, device=device)
-    all_knots = np.concatenate([*knots, np.zeros(1)]).astype(types.dtype)
-    all_cubics = np.vstack([*cubics, np.zeros((1, 4))]).astype(types.dtype)
-    data.knots_nm = wp.array(all_knots, dtype=types.real, device=device)
-    data.cubics = wp.array(all_cubics, dtype=types.real, device=device)
+            kind = LAMBERTIAN if isinstance(material, scenes.Lambertian) else ABSORBER
+        count = len(near[prim])
+        rows.append(
+            (int(kind), medium, priority, finish, int(disperses and varies), first, count)
+        )
+        first += count
+    return rows

@@ -1,35 +1,90 @@
-"""The media of a scene: which there are, where, and on which footing their indices are."""
+"""What a scene is made of: which media there are, where, and on which footing their indices are."""
 
-import numpy as np
+from dataclasses import dataclass
+
+from dataclasses import replace
 
 import scenes
-from spectra import Cauchy, Medium
+from scenes.media import REFERENCE_MEDIA
+from spectra import Medium
 
-__all__ = ["collect_media"]
+__all__ = ["SceneMedia", "collect_media"]
 
 
-def collect_media(scene: scenes.Scene) -> tuple[list[Medium], list[int], list[int]]:
-    """Media in use (the ambient one first), each object's medium, and each one's air power."""
+@dataclass(frozen=True)
+class SceneMedia:
+    """The media and the finishes of a scene.
+
+    Attributes:
+        media: the media, the ambient one first.
+        medium_of: of each object, the row of its medium; 0 if it has none.
+        air_powers: of each medium, the power of the index of air that its index is multiplied by.
+        finishes: the mirrors and metals.
+        finish_of: of each object, the row of its finish; 0 if it has none.
+    """
+
+    media: tuple[Medium, ...]
+    medium_of: tuple[int, ...]
+    air_powers: tuple[int, ...]
+    finishes: tuple[scenes.Mirror | scenes.Metal, ...]
+    finish_of: tuple[int, ...]
+
+    @property
+    def tints(self) -> tuple[bool, ...]:
+        """Of each medium, whether what it absorbs depends on the wavelength."""
+        return tuple(
+            one.absorption is not None and not one.absorption.is_constant for one in self.media
+        )
+
+    @property
+    def varies(self) -> tuple[bool, ...]:
+        """Of each medium, whether its index or what it absorbs depends on the wavelength.
+
+        Air disperses too, and is a factor of the indices that are converted.
+        """
+        return tuple(
+            medium.is_dispersive or power != 0 or tint
+            for medium, power, tint in zip(self.media, self.air_powers, self.tints, strict=True)
+        )
+
+
+def collect_media(scene: scenes.Scene) -> SceneMedia:
+    """What `scene` is made of, each medium and finish once."""
     ambient = _ambient_medium(scene)
     media, medium_of = [ambient], []
+    finishes: list[scenes.Mirror | scenes.Metal] = []
+    finish_of = []
     for item in scene.objects:
+        row, finish = 0, 0
         if isinstance(item.material, scenes.Dielectric):
             medium = item.material.resolved()
             if medium not in media:
                 media.append(medium)
-            medium_of.append(media.index(medium))
-        else:
-            medium_of.append(0)
+            row = media.index(medium)
+        elif isinstance(item.material, scenes.Mirror | scenes.Metal):
+            if item.material not in finishes:
+                finishes.append(item.material)
+            finish = finishes.index(item.material)
+        medium_of.append(row)
+        finish_of.append(finish)
+    return SceneMedia(
+        tuple(media), tuple(medium_of), tuple(_air_powers(scene, media)),
+        tuple(finishes), tuple(finish_of),
+    )
+
+
+def _air_powers(scene: scenes.Scene, media: list[Medium]) -> list[int]:
+    """Of each medium, the power of the index of air that brings all to one footing."""
     if scene.ambient == "reference":
-        return media, medium_of, [0] * len(media)
+        return [0] * len(media)
     # Any other ambient: all indices on one footing, relative to the ambient's own reference.
     powers = []
     for medium in media:
-        if medium.relative_to == ambient.relative_to:
+        if medium.relative_to == media[0].relative_to:
             powers.append(0)
         else:
             powers.append(1 if medium.relative_to == "air" else -1)
-    return media, medium_of, powers
+    return powers
 
 
 def _ambient_medium(scene: scenes.Scene) -> Medium:
@@ -37,10 +92,6 @@ def _ambient_medium(scene: scenes.Scene) -> Medium:
     ambient = scene.resolved_ambient()
     if isinstance(ambient, Medium):
         return ambient
-    return Medium(
-        name=ambient,
-        dispersion=Cauchy((1.0,)),
-        wavelength_range_nm=(0.0, np.inf),
-        source="the index is relative to it",
-        relative_to="vacuum" if ambient == "vacuum" else "air",
-    )
+    if ambient in REFERENCE_MEDIA:
+        return REFERENCE_MEDIA[ambient]
+    return replace(REFERENCE_MEDIA["air"], name=ambient)

@@ -16,6 +16,8 @@ __all__ = [
     "CAUCHY",
     "DIELECTRIC",
     "LAMBERTIAN",
+    "METAL",
+    "MIRROR",
     "SELLMEIER",
     "SHAPE_FLAT",
     "SHAPE_LENS",
@@ -28,6 +30,8 @@ __all__ = [
 DIELECTRIC = wp.constant(0)
 LAMBERTIAN = wp.constant(1)
 ABSORBER = wp.constant(2)
+MIRROR = wp.constant(3)
+METAL = wp.constant(4)
 
 SELLMEIER = wp.constant(0)
 CAUCHY = wp.constant(1)
@@ -102,12 +106,17 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
 
     @wp.struct
     class Ray:
-        """A ray that has just left face `face` of object `prim` (−1: nothing)."""
+        """A ray that has just left face `face` of object `prim` (−1: nothing).
+
+        `prim2` and `face2` are a second one in the same place.
+        """
 
         origin: vec3
         direction: vec3
         prim: int
         face: int
+        prim2: int
+        face2: int
 
     @wp.struct
     class Hit:
@@ -122,8 +131,13 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
     class Interaction:
         """What the surface does. `normal` faces the incoming ray; `side` 1 is the inside or back.
 
+        `prim2` and `face2` are a second surface in the same place, −1 for none. `medium` is the
+        one on the ray's side. `absorbed` is the part of the flux that is lost on the way here and,
+        at a mirror or a metal, to the surface.
+
         At a boundary: `eta` is η_i/η_t, `reflectance` the mean of R_s and R_p, `total` 1 where
-        the reflection is total (then `refracted` is unset).
+        the reflection is total (then `refracted` is unset). A mirror or a metal is `opaque`, and
+        reflects what it does not absorb totally.
         """
 
         event: int
@@ -132,9 +146,14 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
         normal: vec3
         prim: int
         face: int
+        prim2: int
+        face2: int
         side: int
+        medium: int
         dispersive: int
         total: int
+        opaque: int
+        absorbed: real
         eta: real
         reflectance: real
         reflected: vec3
@@ -149,7 +168,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
 
     Returns:
         A namespace with `real`, `vec3`, `mat33`, the shape structs, the ray structs, and Body
-        (one a scene object), Medium and Scene.
+        (one a scene object), Medium, Finish and Scene.
     """
     types = precision_types(precision)
     real = types.real
@@ -159,14 +178,22 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
 
     @wp.struct
     class Body:
-        """An object: its shape (kind, and row in that kind's array), its material and media."""
+        """An object: its shape (kind, and row in that kind's array), and what it is made of.
+
+        `medium_inside` of any but a dielectric is the ambient medium, 0. `neighbours` are objects
+        that may touch or hold points of its surface: `neighbour_count` of the scene's list, from
+        `neighbour_first` on.
+        """
 
         shape: int
         row: int
         material: int
-        medium_outside: int
         medium_inside: int
+        priority: int
+        finish: int  # row of its mirror or metal
         dispersive: int
+        neighbour_first: int
+        neighbour_count: int
 
     @wp.struct
     class Medium:
@@ -174,6 +201,19 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         knot_first: int
         knot_count: int
         air_power: int  # +1: multiply by the index of air, −1: divide by it
+        loss_first: int  # knots of its absorption coefficient [1/m]
+        loss_count: int
+        varies: int  # 1 if index or absorption depend on the wavelength
+
+    @wp.struct
+    class Finish:
+        """A mirror's reflectance, or a metal's n and k, as rows of knots; 1 if it `varies`."""
+
+        first: int
+        count: int
+        k_first: int
+        k_count: int
+        varies: int
 
     @wp.struct
     class Scene:
@@ -183,7 +223,9 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         planes: wp.array(dtype=plane)
         lenses: wp.array(dtype=lens)
         bodies: wp.array(dtype=Body)
+        neighbours: wp.array(dtype=int)
         media: wp.array(dtype=Medium)
+        finishes: wp.array(dtype=Finish)
         coefficients: wp.array2d(dtype=real)
         knots_nm: wp.array(dtype=real)
         cubics: wp.array2d(dtype=real)
@@ -191,6 +233,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         flat_count: int
         polyhedron_count: int
         lens_count: int
+        touch: real  # surfaces nearer than this are in one place [m]
 
     return SimpleNamespace(
         real=real,
@@ -198,6 +241,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         mat33=types.mat33,
         Body=Body,
         Medium=Medium,
+        Finish=Finish,
         Scene=Scene,
         **vars(shapes),
         **vars(rays),

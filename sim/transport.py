@@ -4,11 +4,12 @@ Photons, camera paths and single rays all advance by `interact`, so that a test 
 a single ray exercises the code that makes the pictures. `geometry` says where, `optics` says
 what; they meet only here.
 
-A solid knows the medium inside it and the one outside. Two facts keep rays from slipping: a ray
-that leaves a surface excludes that surface (no epsilon), and the same boundary point is reported
-to both branches of a split.
+A solid knows the medium inside it; outside is the ambient one, or where solids may touch or nest,
+what `sim.surroundings` finds. Two facts keep rays from slipping: a ray that leaves a surface
+excludes that surface (no epsilon), and the same boundary point is reported to both branches of a
+split.
 
-Formulas: Snell and Fresnel as cited in `sim.optics.dielectric`.
+Formulas: Snell, Fresnel and Beer–Lambert as cited in `sim.optics`.
 """
 
 import functools
@@ -21,6 +22,8 @@ from sim.geometry.flat import intersect_plane, plane_coordinates
 from sim.geometry.lens import intersect_lens, lens_normal
 from sim.geometry.polyhedron import intersect_polyhedron
 from sim.geometry.sphere import intersect_sphere
+from sim.optics.absorption import absorbed_fraction
+from sim.optics.conductor import conductor_reflectance
 from sim.optics.dielectric import (
     fresnel_reflectance,
     reflect,
@@ -29,68 +32,30 @@ from sim.optics.dielectric import (
     schlick_reflectance,
     sin2_theta_t,
 )
-from sim.optics.dispersion import air_index, cauchy_index, sellmeier_index, tabulated_index
-from sim.scene_structs import (
-    CAUCHY,
-    DIELECTRIC,
-    LAMBERTIAN,
-    SELLMEIER,
-    TABULATED,
-    make_scene_structs,
-)
+from sim.optics.dispersion import tabulated_index
+from sim.path_media import make_media_functions
+from sim.scene_structs import DIELECTRIC, LAMBERTIAN, METAL, MIRROR, make_scene_structs
+from sim.surroundings import make_surroundings
 
-__all__ = ["EVENT_ABSORB", "EVENT_BOUNDARY", "EVENT_DEPOSIT", "EVENT_ESCAPE", "make_transport"]
+__all__ = [
+    "EVENT_ABSORB",
+    "EVENT_BOUNDARY",
+    "EVENT_DEPOSIT",
+    "EVENT_ESCAPE",
+    "EVENT_PASS",
+    "make_transport",
+]
 
 EVENT_ESCAPE = wp.constant(0)
 """The ray meets nothing more."""
 EVENT_BOUNDARY = wp.constant(1)
-"""A boundary between two media: the ray splits."""
+"""A boundary between two media, where the ray splits, or a mirror or a metal, where it does not."""
 EVENT_DEPOSIT = wp.constant(2)
 """A diffuse surface: the photon is stored, the camera path gathers."""
 EVENT_ABSORB = wp.constant(3)
 """An absorber: the light ends here."""
-
-
-@functools.cache
-def make_media_function(precision: str, features: Features):
-    """Device function `media_indices(scene, wavelength_nm)`: the index of every medium.
-
-    A path keeps its wavelength, so its indices are evaluated once, with only the formulas that
-    the scene's media use.
-    """
-    structs = make_scene_structs(precision)
-    real, scene_type = structs.real, structs.Scene
-    indices_type = wp.types.vector(length=features.media_count, dtype=real)
-    media_count = features.media_count
-
-    @wp.func
-    def media_indices(scene: scene_type, wavelength_nm: real):
-        wavelength_um = wavelength_nm * real(1e-3)
-        indices = indices_type()
-        for medium in range(media_count):
-            row = scene.media[medium]
-            n = real(1.0)
-            if wp.static(features.sellmeier):
-                if row.formula == SELLMEIER:
-                    n = sellmeier_index(scene.coefficients, medium, wavelength_um)
-            if wp.static(features.cauchy):
-                if row.formula == CAUCHY:
-                    n = cauchy_index(scene.coefficients, medium, wavelength_um)
-            if wp.static(features.tabulated):
-                if row.formula == TABULATED:
-                    n = tabulated_index(
-                        scene.knots_nm, scene.cubics, row.knot_first, row.knot_count,
-                        wavelength_nm,
-                    )
-            if wp.static(features.air_conversion):
-                if row.air_power > 0:
-                    n *= air_index(wavelength_um)
-                elif row.air_power < 0:
-                    n /= air_index(wavelength_um)
-            indices[medium] = n
-        return indices
-
-    return media_indices
+EVENT_PASS = wp.constant(4)
+"""A face with the same medium on both sides, hidden by another solid: the light goes straight on."""
 
 
 @functools.cache
@@ -99,6 +64,23 @@ def make_intersect(precision: str, features: Features):
     structs = make_scene_structs(precision)
     real = structs.real
     scene_type, ray_type, hit_type = structs.Scene, structs.Ray, structs.Hit
+
+    @wp.func
+    def leaves(ray: ray_type, prim: int):
+        if wp.static(features.interfaces):
+            return ray.prim == prim or ray.prim2 == prim
+        return ray.prim == prim
+
+    @wp.func
+    def face_left(ray: ray_type, prim: int):
+        """The face of `prim` that the ray has just left, or −1."""
+        face = int(-1)
+        if ray.prim == prim:
+            face = ray.face
+        if wp.static(features.interfaces):
+            if ray.prim2 == prim:
+                face = ray.face2
+        return face
 
     @wp.func
     def intersect(scene: scene_type, ray: ray_type):
@@ -111,7 +93,9 @@ def make_intersect(precision: str, features: Features):
             while i < scene.sphere_count:
                 sphere = scene.spheres[i]
                 local = ray.origin - sphere.centre
-                t = intersect_sphere(local, ray.direction, sphere.radius, ray.prim == sphere.prim)
+                t = intersect_sphere(
+                    local, ray.direction, sphere.radius, leaves(ray, sphere.prim)
+                )
                 if t >= real(0.0) and t < hit.t:
                     hit.t = t
                     hit.prim = sphere.prim
@@ -124,7 +108,7 @@ def make_intersect(precision: str, features: Features):
             i = int(0)
             while i < scene.flat_count:
                 flat = scene.flats[i]
-                if ray.prim != flat.prim:
+                if not leaves(ray, flat.prim):
                     local = ray.origin - flat.centre
                     normal = flat.frame[2]
                     t = intersect_plane(local, ray.direction, normal)
@@ -141,9 +125,7 @@ def make_intersect(precision: str, features: Features):
             i = int(0)
             while i < scene.polyhedron_count:
                 body = scene.polyhedra[i]
-                leaving_face = -1
-                if ray.prim == body.prim:
-                    leaving_face = ray.face
+                leaving_face = face_left(ray, body.prim)
                 t, face = intersect_polyhedron(
                     ray.origin - body.centre, ray.direction, scene.planes, body.first,
                     body.count, leaving_face,
@@ -158,9 +140,7 @@ def make_intersect(precision: str, features: Features):
             i = int(0)
             while i < scene.lens_count:
                 lens = scene.lenses[i]
-                leaving_face = -1
-                if ray.prim == lens.prim:
-                    leaving_face = ray.face
+                leaving_face = face_left(ray, lens.prim)
                 origin = lens.frame * (ray.origin - lens.centre)
                 direction = lens.frame * ray.direction
                 t, face = intersect_lens(lens, origin, direction, leaving_face)
@@ -191,8 +171,10 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
     scene_type, ray_type = structs.Scene, structs.Ray
     interaction_type, hit_type = structs.Interaction, structs.Hit
     intersect = make_intersect(precision, features)
-    indices_type = wp.types.vector(length=features.media_count, dtype=real)
-    media_indices = make_media_function(precision, features)
+    media = make_media_functions(precision, features)
+    indices_type, absorption_of = media.Indices, media.absorption_of
+    wavelength_of = media.wavelength_of
+    surroundings_of = make_surroundings(precision, features).surroundings_of
 
     @wp.func
     def cross_boundary(direction: vec3, normal: vec3, eta: real):
@@ -217,6 +199,20 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         return 0, reflectance, reflected, refracted
 
     @wp.func
+    def finish_reflectance(scene: scene_type, finish: int, cos_theta_i: real, indices: indices_type, medium: int):
+        """Of a mirror by its table, of a metal by Fresnel's equations with a complex index."""
+        row = scene.finishes[finish]
+        wavelength_nm = wavelength_of(indices)
+        value = tabulated_index(scene.knots_nm, scene.cubics, row.first, row.count, wavelength_nm)
+        if row.k_count == 0:
+            return value
+        k = tabulated_index(scene.knots_nm, scene.cubics, row.k_first, row.k_count, wavelength_nm)
+        r_s, r_p = conductor_reflectance(
+            cos_theta_i, value / indices[medium], k / indices[medium]
+        )
+        return real(0.5) * (r_s + r_p)
+
+    @wp.func
     def scatter(scene: scene_type, ray: ray_type, hit: hit_type, indices: indices_type):
         # Structs are filled field by field: a struct assigned whole inside a branch is copied
         # at every merge of the compiled code, which made this step four times slower.
@@ -225,32 +221,77 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         met.t = hit.t
         met.prim = hit.prim
         met.face = hit.face
+        met.prim2 = -1
         if hit.prim >= 0:
             body = scene.bodies[hit.prim]
             normal = hit.normal
+            beyond = body.medium_inside
             if wp.dot(ray.direction, normal) > real(0.0):
                 normal = -normal
                 met.side = 1
+                met.medium = body.medium_inside
+                beyond = int(0)
             met.point = ray.origin + ray.direction * hit.t
             met.normal = normal
+            met.dispersive = body.dispersive
+            if wp.static(features.interfaces):
+                if body.neighbour_count > 0:
+                    found = surroundings_of(scene, hit.prim, met.side, met.point, normal)
+                    met.medium = found.near
+                    beyond = found.far
+                    met.prim2 = found.prim
+                    met.face2 = found.face
+                    if found.prim >= 0 and body.material == DIELECTRIC:
+                        body = scene.bodies[found.prim]
+                        if body.material != DIELECTRIC:
+                            # What touches the glass is what the light meets.
+                            met.prim = found.prim
+                            met.face = found.face
+                            met.prim2 = hit.prim
+                            met.face2 = hit.face
+                            met.side = found.side
+                            met.normal = found.normal
+                            met.dispersive = body.dispersive
             met.event = EVENT_ABSORB
             if body.material == LAMBERTIAN:
                 met.event = EVENT_DEPOSIT
             if wp.static(features.boundaries):
                 if body.material == DIELECTRIC:
                     met.event = EVENT_BOUNDARY
-                    met.dispersive = body.dispersive
-                    eta = indices[body.medium_outside] / indices[body.medium_inside]
-                    if met.side == 1:
-                        eta = indices[body.medium_inside] / indices[body.medium_outside]
+                    if wp.static(features.interfaces):
+                        met.dispersive = (
+                            scene.media[met.medium].varies | scene.media[beyond].varies
+                        )
+                        if met.medium == beyond:
+                            met.event = EVENT_PASS
+                            met.dispersive = 0
+                    eta = indices[met.medium] / indices[beyond]
                     total, reflectance, reflected, refracted = cross_boundary(
-                        ray.direction, normal, eta
+                        ray.direction, met.normal, eta
                     )
                     met.eta = eta
                     met.total = total
                     met.reflectance = reflectance
                     met.reflected = reflected
                     met.refracted = refracted
+            if wp.static(features.finishes):
+                if body.material == MIRROR or body.material == METAL:
+                    met.event = EVENT_BOUNDARY
+                    cos_theta_i = wp.min(-wp.dot(ray.direction, met.normal), real(1.0))
+                    met.total = 1
+                    met.opaque = 1
+                    met.eta = real(1.0)
+                    met.reflectance = real(1.0)
+                    met.reflected = reflect(ray.direction, met.normal, cos_theta_i)
+                    met.refracted = met.reflected
+                    met.absorbed = real(1.0) - finish_reflectance(
+                        scene, body.finish, cos_theta_i, indices, met.medium
+                    )
+        if wp.static(features.absorption):
+            lost = absorbed_fraction(absorption_of(indices, met.medium), hit.t)
+            met.absorbed += lost - lost * met.absorbed
+            if lost > real(0.0):
+                met.dispersive = met.dispersive | scene.media[met.medium].tints
         return met
 
     @wp.func
@@ -267,7 +308,9 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
     return SimpleNamespace(
         **vars(structs),
         intersect=intersect,
-        media_indices=media_indices,
+        media_indices=media.media_indices,
+        absorption_of=absorption_of,
+        Indices=indices_type,
         scatter=scatter,
         interact=interact,
         split=split,

@@ -7,10 +7,13 @@ Conventions: wavelengths are nanometres (``wavelength_nm``) in air or in vacuum 
 ``relative_to`` says; everything else is SI.
 """
 
+from spectra.absorption import Absorption
+from spectra.conductors import Conductor, conductor, conductors
 from spectra.dispersion import Cauchy, Dispersion, Sellmeier, Tabulated, air_index
 from spectra.emission import EmissionSpectrum
 from spectra.errors import (
     SpectraError,
+    UnknownConductor,
     UnknownGlass,
     UnknownName,
     UnknownObserver,
@@ -39,7 +42,9 @@ from spectra.units import VISIBLE_RANGE_NM
 
 __all__ = [
     "VISIBLE_RANGE_NM",
+    "Absorption",
     "Cauchy",
+    "Conductor",
     "Dispersion",
     "EmissionSpectrum",
     "Medium",
@@ -47,6 +52,7 @@ __all__ = [
     "Sellmeier",
     "SpectraError",
     "Tabulated",
+    "UnknownConductor",
     "UnknownGlass",
     "UnknownName",
     "UnknownObserver",
@@ -55,6 +61,8 @@ __all__ = [
     "air_index",
     "blackbody",
     "cie_illuminant",
+    "conductor",
+    "conductors",
     "encode_srgb",
     "glass",
     "glasses",

@@ -228,16 +228,24 @@ class Tabulated(Dispersion):
         return index
 
 
-def require_in_range(wavelength_nm: FloatArray, medium: str, range_nm: tuple[float, float]) -> None:
+def require_in_range(
+    wavelength_nm: FloatArray,
+    medium: str,
+    range_nm: tuple[float, float],
+    *,
+    quantity: str = "refractive index",
+) -> None:
     """Refuse wavelengths [nm] outside ``range_nm``, ends included; NaN is outside.
 
     Raises:
-        WavelengthOutOfRange: Naming ``medium`` and the first wavelength outside.
+        WavelengthOutOfRange: Naming ``medium``, the ``quantity`` that it lacks there, and the
+            first wavelength outside.
     """
     low, high = range_nm
     outside = ~((wavelength_nm >= low) & (wavelength_nm <= high))
     if np.any(outside):
-        raise WavelengthOutOfRange(medium, float(wavelength_nm[outside].flat[0]), range_nm)
+        first = float(wavelength_nm[outside].flat[0])
+        raise WavelengthOutOfRange(medium, first, range_nm, quantity)
 
 
 def air_index(wavelength_nm: FloatOrArray) -> FloatOrArray:

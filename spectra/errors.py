@@ -2,6 +2,7 @@
 
 SpectraError(ValueError)          a quantity that is not a spectrum, an index, a colour
 ├── UnknownName(KeyError)         a name that is not in the tables; lists the nearest ones
+│   ├── UnknownConductor
 │   ├── UnknownGlass
 │   ├── UnknownObserver
 │   └── UnknownSpectrum
@@ -17,6 +18,7 @@ from spectra.units import M_PER_NM, NM_PER_UM
 
 __all__ = [
     "SpectraError",
+    "UnknownConductor",
     "UnknownGlass",
     "UnknownName",
     "UnknownObserver",
@@ -72,6 +74,12 @@ class UnknownName(SpectraError, KeyError):
         return f"known: {', '.join(self.known)}"
 
 
+class UnknownConductor(UnknownName):
+    """A metal that is not in the tables."""
+
+    kind = "metal"
+
+
 class UnknownGlass(UnknownName):
     """A medium that is not in the glass table."""
 
@@ -97,24 +105,33 @@ class WavelengthOutOfRange(SpectraError):
         medium: Name of the medium.
         wavelength_nm: The offending wavelength [nm]; the first one, if there are several.
         range_nm: Lowest and highest valid wavelength [nm].
+        quantity: What there is none of.
 
     Attributes:
         medium: Name of the medium.
         wavelength_nm: The offending wavelength [nm].
         range_nm: Lowest and highest valid wavelength [nm].
+        quantity: What there is none of.
     """
 
-    def __init__(self, medium: str, wavelength_nm: float, range_nm: tuple[float, float]) -> None:
-        super().__init__(medium, wavelength_nm, range_nm)
+    def __init__(
+        self,
+        medium: str,
+        wavelength_nm: float,
+        range_nm: tuple[float, float],
+        quantity: str = "refractive index",
+    ) -> None:
+        super().__init__(medium, wavelength_nm, range_nm, quantity)
         self.medium = medium
         self.wavelength_nm = wavelength_nm
         self.range_nm = range_nm
+        self.quantity = quantity
 
     def __str__(self) -> str:
         """The sentence, with a hint when another unit of length would have been in range."""
         low, high = self.range_nm
         return (
-            f"{self.medium} has no refractive index at {self.wavelength_nm:.10g} nm; "
+            f"{self.medium} has no {self.quantity} at {self.wavelength_nm:.10g} nm; "
             f"allowed: {low:g} to {high:g} nm{self._unit_hint()}"
         )
 

@@ -15,6 +15,7 @@ from typing import Literal
 
 import numpy as np
 
+from spectra.absorption import Absorption
 from spectra.arrays import FloatOrArray
 from spectra.dispersion import Dispersion, Sellmeier, require_in_range
 from spectra.errors import SpectraError, UnknownGlass
@@ -28,7 +29,7 @@ _CHECKED_POINTS = 65
 
 @dataclass(frozen=True)
 class Medium:
-    """A transparent medium: a dispersion formula, and where and how it was measured.
+    """A transparent or coloured medium: its index and its absorption, and how both were measured.
 
     Attributes:
         name: What people call it.
@@ -36,6 +37,7 @@ class Medium:
         wavelength_range_nm: Lowest and highest valid wavelength [nm].
         source: Publication the coefficients come from.
         relative_to: What the index is relative to: the air it was measured in, or vacuum.
+        absorption: What it takes of the light on its way; None: nothing, or nobody asks.
     """
 
     name: str
@@ -43,6 +45,7 @@ class Medium:
     wavelength_range_nm: tuple[float, float]
     source: str
     relative_to: Literal["air", "vacuum"]
+    absorption: Absorption | None = None
 
     def __post_init__(self) -> None:
         """Check that the formula gives an index everywhere in the range."""

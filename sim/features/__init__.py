@@ -7,6 +7,7 @@ by them; `flags` is what kernels ask.
 import sim.features.arithmetic
 import sim.features.lamps
 import sim.features.light
+import sim.features.matter
 import sim.features.media
 import sim.features.shapes  # noqa: F401 (importing registers)
 from sim.features.flags import Features

@@ -19,6 +19,9 @@ class Features:
         sellmeier, cauchy, tabulated: which dispersion formulas the media use.
         air_conversion: some index is converted between "relative to air" and "to vacuum".
         boundaries: light can meet a boundary between two media.
+        interfaces: solids can touch, nest or overlap.
+        absorption: some medium absorbs.
+        finishes: light can meet a mirror or a metal.
         reflected_branches: boundaries can reflect.
         dispersion: boundaries can part light by its wavelength.
         undispersed_photons: photons that no dispersion has touched can be in the map.
@@ -37,6 +40,9 @@ class Features:
     tabulated: bool = True
     air_conversion: bool = True
     boundaries: bool = True
+    interfaces: bool = True
+    absorption: bool = True
+    finishes: bool = True
     reflected_branches: bool = True
     dispersion: bool = True
     undispersed_photons: bool = True

@@ -1,8 +1,17 @@
 """Features: what happens to light at boundaries, and how receivers learn of it."""
 
-from scenes import Dielectric
+from scenes import Dielectric, Metal, Mirror
 from sim.features.boundary_error import path_error, relative_variations
-from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
+from sim.features.registry import (
+    Cost,
+    Feature,
+    Subject,
+    Verdict,
+    is_tinted,
+    needed,
+    null,
+    register,
+)
 
 __all__: list[str] = []
 
@@ -52,6 +61,12 @@ def _judge_dispersion(subject: Subject) -> Verdict | None:
 
     The bound is that of treating every wavelength as any other one of the film's.
     """
+    coloured = sum(one.is_coloured for one in subject.finishes)
+    if coloured:
+        return needed(f"{coloured} mirrors or metals reflect some wavelengths more than others")
+    tinted = [medium.name for medium in subject.media if is_tinted(medium)]
+    if tinted:
+        return needed("absorption depends on the wavelength: " + ", ".join(tinted))
     if not subject.has_boundaries:
         return null("there is no boundary")
     if not any(subject.varying_media):
@@ -84,6 +99,8 @@ def _judge_undispersed(subject: Subject) -> Verdict:
         if isinstance(item.material, Dielectric):
             if not (ambient or varies.get(item.material.resolved(), False)):
                 return needed(f"light keeps its colours together in {item.name}")
+        elif isinstance(item.material, Mirror | Metal) and not item.material.is_coloured:
+            return needed(f"light keeps its colours together on {item.name}")
     return null("what is in the map has met glass, and all glass is dispersive")
 
 

@@ -7,6 +7,7 @@ to no more than the tolerance, the least first; any further omission is refused.
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -93,10 +94,10 @@ class FeaturePlan:
 
 def plan_features(scene: scenes.Scene, settings: ResolvedSettings) -> FeaturePlan:
     """What `scene` requires when it is rendered with `settings`."""
-    media, _, air_powers = collect_media(scene)
+    made_of = collect_media(scene)
     return judge_features(
         Subject(
-            scene, tuple(media), tuple(air_powers), settings.direct_light, settings.precision
+            scene, made_of.media, made_of.air_powers, settings.direct_light, settings.precision
         ),
         tolerance=settings.omission_tolerance,
         everything=settings.features == "all",
@@ -147,7 +148,9 @@ def _allowed(verdicts: dict[str, Verdict | None], tolerance: float) -> set[str]:
     return allowed
 
 
-def find_features(scene: scenes.Scene, media: list[Medium], air_powers: list[int]) -> Features:
+def find_features(
+    scene: scenes.Scene, media: Sequence[Medium], air_powers: Sequence[int]
+) -> Features:
     """The flags of all that could change anything, with any settings.
 
     Args:

@@ -56,12 +56,28 @@ class Subject:
 
     @cached_property
     def varying_media(self) -> tuple[bool, ...]:
-        """Of each medium, whether its index depends on the wavelength.
+        """Of each medium, whether its index depends on the wavelength, or what it absorbs.
 
         Air disperses too, and is a factor of the indices that are converted.
         """
         pairs = zip(self.media, self.air_powers, strict=True)
-        return tuple(medium.is_dispersive or power != 0 for medium, power in pairs)
+        return tuple(
+            medium.is_dispersive or power != 0 or is_tinted(medium) for medium, power in pairs
+        )
+
+    @cached_property
+    def finishes(self) -> tuple[scenes.Mirror | scenes.Metal, ...]:
+        """The mirrors and metals, one an object that has such a surface."""
+        return tuple(
+            item.material
+            for item in self.scene.objects
+            if isinstance(item.material, scenes.Mirror | scenes.Metal)
+        )
+
+
+def is_tinted(medium: Medium) -> bool:
+    """Whether what a medium absorbs depends on the wavelength."""
+    return medium.absorption is not None and not medium.absorption.is_constant
 
 
 @dataclass(frozen=True)

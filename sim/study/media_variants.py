@@ -66,12 +66,14 @@ def _rewrite(scene: scenes.Scene, describe: _Describe) -> scenes.Scene:
     def redescribed(item: scenes.SceneObject) -> scenes.SceneObject:
         if not isinstance(item.material, scenes.Dielectric):
             return item
-        medium = resolve_medium(item.material.medium)
+        named = item.material.medium
+        medium = resolve_medium(named)
         if not medium.is_dispersive:
             return item
-        material = scenes.Dielectric.model_validate(
-            {"medium": describe(medium, low_nm, high_nm)}
-        )
+        described = describe(medium, low_nm, high_nm)
+        if isinstance(named, DescribedMedium):
+            described = described.model_copy(update={"absorption": named.absorption})
+        material = item.material.model_copy(update={"medium": described})
         return item.model_copy(update={"material": material})
 
     return scene.model_copy(update={"objects": tuple(map(redescribed, scene.objects))})

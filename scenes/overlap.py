@@ -1,0 +1,101 @@
+"""Solids that claim the same space.
+
+Where solids overlap, the one of the higher priority fills the space (Schmidt & Budge 2002, "Simple
+nested dielectrics in ray traced images", J. Graph. Tools 7(2), 1). Two different media of equal
+priority are a contradiction, and an error.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenes.errors import Problem
+from scenes.materials import Dielectric
+from scenes.objects import SceneObject
+from scenes.shapes.depth import height_above
+from scenes.shapes.reach import may_meet
+
+__all__ = ["overlap_depth", "overlap_problems"]
+
+FloatArray = NDArray[np.float64]
+
+_TOUCH = 1e-9
+"""Solids that enter one another by less than this part of the smaller one's size only touch."""
+
+_CELLS = 12
+_STARTS = 8
+_ROUNDS = 24
+
+
+def overlap_problems(objects: Mapping[int, SceneObject]) -> list[Problem]:
+    """Every pair of different media that claims the same space with the same priority."""
+    solids = [
+        (index, one) for index, one in objects.items() if isinstance(one.material, Dielectric)
+    ]
+    problems = []
+    for place, (i, one) in enumerate(solids):
+        for j, other in solids[place + 1 :]:
+            problem = _clash(i, one, j, other)
+            if problem is not None:
+                problems.append(problem)
+    return problems
+
+
+def _clash(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem | None:
+    """What is wrong between two solids, if anything is."""
+    assert isinstance(one.material, Dielectric)
+    assert isinstance(other.material, Dielectric)
+    priority = other.material.priority
+    if one.material.priority != priority or one.material.resolved() == other.material.resolved():
+        return None
+    if not may_meet(one.shape, other.shape):
+        return None
+    smaller = min(one.shape.bounding_sphere()[1], other.shape.bounding_sphere()[1])
+    depth = overlap_depth(one.shape, other.shape)
+    if depth <= _TOUCH * smaller:
+        return None
+    names = f"{other.name or f'objects[{j}]'!r} and {one.name or f'objects[{i}]'!r}"
+    allowed = f"a priority other than {priority} for the one that fills the space where they overlap"
+    message = (
+        f"{names} claim the same space, {depth:.3g} m deep, with different media and the same"
+        f" priority {priority}; allowed: {allowed}, or shapes apart from each other"
+    )
+    return Problem(f"objects[{j}].material.priority", message, priority, allowed)
+
+
+def overlap_depth(one: Any, other: Any) -> float:
+    """How deep two solids enter one another [m]: how deep inside both a point can be; 0 if none.
+
+    The height above both, max(h₁, h₂), is searched for its lowest point: on a grid over what
+    both solids' boxes share, then on ever finer grids about the best points found. For solids that
+    are not known (`height_above`), 0.
+    """
+    low = np.maximum(_box(one)[0], _box(other)[0])
+    high = np.minimum(_box(one)[1], _box(other)[1])
+    if np.any(low > high):
+        return 0.0
+    lattice = (np.indices((_CELLS,) * 3).reshape(3, -1).T + 0.5) / _CELLS
+    points = low + lattice * (high - low)
+    cell = (high - low) / _CELLS
+    best = points
+    lowest = np.inf
+    for _ in range(_ROUNDS):
+        heights = [height_above(shape, points) for shape in (one, other)]
+        if heights[0] is None or heights[1] is None:
+            return 0.0
+        height = np.maximum(heights[0], heights[1])
+        order = np.argsort(height, kind="stable")[:_STARTS]
+        if height[order[0]] < lowest:
+            lowest, best = float(height[order[0]]), points[order]
+        nearby = (np.indices((3,) * 3).reshape(3, -1).T - 1.0) * 0.5 * cell
+        points = (best[:, None, :] + nearby).reshape(-1, 3)
+        cell = cell * 0.6
+    return -lowest if lowest < 0.0 else 0.0
+
+
+def _box(shape: Any) -> tuple[FloatArray, FloatArray]:
+    """A box around the bounding sphere."""
+    centre, radius = shape.bounding_sphere()
+    return np.asarray(centre) - radius, np.asarray(centre) + radius

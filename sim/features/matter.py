@@ -1,0 +1,95 @@
+"""Features: what solids are to one another, what media absorb, and surfaces that light ends at."""
+
+import math
+
+import numpy as np
+
+import scenes
+from sim.features.boundary_error import BOUNDARIES
+from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
+from sim.scene_neighbours import find_neighbours
+
+__all__: list[str] = []
+
+_NEAR = 1e-4
+"""Solids within this part of the scene's size of each other may touch, whatever the precision."""
+
+_SAMPLES = 257
+
+
+def _size(scene: scenes.Scene) -> float:
+    """Diameter of a sphere around the finite objects, at most twice too large [m]."""
+    spheres = [
+        item.shape.bounding_sphere()
+        for item in scene.objects
+        if not isinstance(item.shape, scenes.Plane)
+    ]
+    if not spheres:
+        return 1.0
+    middle = np.mean([centre for centre, _ in spheres], axis=0)
+    return 2.0 * max(float(np.linalg.norm(centre - middle)) + radius for centre, radius in spheres)
+
+
+def _judge_interfaces(subject: Subject) -> Verdict:
+    names = [item.name for item in subject.scene.objects]
+    near = find_neighbours(subject.scene, _NEAR * _size(subject.scene))
+    pairs = [f"{names[i]} and {names[j]}" for i, row in enumerate(near) for j in row if i < j]
+    if not pairs:
+        return null("no solid is near another object")
+    more = f", and {len(pairs) - 1} pairs more" if len(pairs) > 1 else ""
+    return needed(f"may touch, nest or overlap: {pairs[0]}{more}")
+
+
+register(Feature(
+    name="interfaces",
+    what="solids touch, nest and overlap: each surface finds the media on both sides",
+    judge=_judge_interfaces,
+    flag="interfaces",
+    cost=Cost(1.00, "ball"),
+))  # fmt: skip
+
+
+def _judge_absorption(subject: Subject) -> Verdict:
+    """What is lost on a way as long as light can be inside: α L, L = `BOUNDARIES` diameters."""
+    edges_nm = subject.scene.film.edges_nm
+    wavelength_nm = np.linspace(edges_nm[0], edges_nm[-1], _SAMPLES)
+    strongest, name = 0.0, ""
+    for medium in subject.media:
+        if medium.absorption is None:
+            continue
+        if medium.absorption.wavelength_nm:
+            knots, values = medium.absorption.wavelength_nm, medium.absorption.napierian_per_m
+            alpha = max(np.max(np.interp(wavelength_nm, knots, values)), max(values))
+        else:
+            alpha = max(medium.absorption.napierian_per_m)
+        if alpha > strongest:
+            strongest, name = float(alpha), medium.name
+    if strongest == 0.0:
+        return null("no medium absorbs")
+    bound = -math.expm1(-strongest * BOUNDARIES * _size(subject.scene))
+    return Verdict(f"{name} absorbs up to {strongest:.3g} per metre", bound)
+
+
+register(Feature(
+    name="absorption",
+    what="Beer–Lambert along every way through a medium",
+    judge=_judge_absorption,
+    flag="absorption",
+    cost=Cost(1.00, "ball"),
+))  # fmt: skip
+
+
+def _judge_finishes(subject: Subject) -> Verdict:
+    count = len(subject.finishes)
+    if count == 0:
+        return null("no mirror and no metal")
+    return needed(f"{count} mirrors or metals")
+
+
+register(Feature(
+    name="mirrors and metals",
+    what="surfaces that reflect by a table, or by a complex index",
+    judge=_judge_finishes,
+    flag="finishes",
+    cost=Cost(1.00, "ball"),
+))  # fmt: skip
