@@ -29,6 +29,8 @@ from scenes.materials import Absorber, Dielectric, Lambertian, Metal, Mirror
 from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMedium
 from scenes.metals import MetalTable
 from scenes.objects import SceneObject
+from scenes.polarisation import Polarisation
+from scenes.polariser import Polariser
 from scenes.reflectance import ReflectanceTable
 from scenes.scene import RenderDefaults, Scene
 from scenes.shapes import (
@@ -70,6 +72,8 @@ __all__ = [
     "NapierianAbsorption",
     "Plane",
     "Point",
+    "Polarisation",
+    "Polariser",
     "Polyhedron",
     "Prism",
     "Problem",

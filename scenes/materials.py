@@ -11,6 +11,7 @@ from scenes.errors import Problem, refusal
 from scenes.media import DescribedMedium, MediumSpec, coloured, resolve_medium
 from scenes.metals import MetalSpec, resolve_metal
 from scenes.model import SceneModel
+from scenes.polariser import Polariser
 from scenes.reflectance import Reflectance, ReflectanceTable, reflectance_at
 from spectra import Conductor, Medium
 
@@ -105,6 +106,7 @@ class Absorber(SceneModel):
 
 
 Material = Annotated[
-    Dielectric | Lambertian | Mirror | Metal | Absorber, Field(discriminator="type")
+    Dielectric | Lambertian | Mirror | Metal | Polariser | Absorber,
+    Field(discriminator="type"),
 ]
 """Any material."""
