@@ -25,7 +25,7 @@ from scenes.errors import Problem, SceneError
 from scenes.files import gallery, gallery_path, load, loads, schema
 from scenes.film import Film
 from scenes.frames import rotation_matrix
-from scenes.materials import Absorber, Dielectric, Lambertian, Metal, Mirror
+from scenes.materials import Absorber, Dielectric, Lambertian, Metal, Mirror, is_specular
 from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMedium
 from scenes.metals import MetalTable
 from scenes.objects import SceneObject
@@ -95,6 +95,7 @@ __all__ = [
     "TransmittanceTable",
     "gallery",
     "gallery_path",
+    "is_specular",
     "load",
     "loads",
     "rotation_matrix",

@@ -15,7 +15,7 @@ from scenes.polariser import Polariser
 from scenes.reflectance import Reflectance, ReflectanceTable, reflectance_at
 from spectra import Conductor, Medium
 
-__all__ = ["Absorber", "Dielectric", "Lambertian", "Material", "Metal", "Mirror"]
+__all__ = ["Absorber", "Dielectric", "Lambertian", "Material", "Metal", "Mirror", "is_specular"]
 
 
 class Dielectric(SceneModel):
@@ -78,7 +78,8 @@ class Mirror(SceneModel):
     @property
     def is_coloured(self) -> bool:
         """Whether what it reflects depends on the wavelength."""
-        return isinstance(self.reflectance, ReflectanceTable) and len(set(self.reflectance.values)) > 1
+        table = self.reflectance
+        return isinstance(table, ReflectanceTable) and len(set(table.values)) > 1
 
 
 class Metal(SceneModel):
@@ -103,6 +104,11 @@ class Absorber(SceneModel):
     """Swallows all light."""
 
     type: Literal["absorber"] = Field(default="absorber", description="black")
+
+
+def is_specular(material: object) -> bool:
+    """Whether a surface sends light on in single directions, by refraction or reflection."""
+    return isinstance(material, Dielectric | Mirror | Metal)
 
 
 Material = Annotated[

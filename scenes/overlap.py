@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scenes.errors import Problem
 from scenes.materials import Dielectric
 from scenes.objects import SceneObject
+from scenes.shapes import Plane
 from scenes.shapes.depth import height_above
 from scenes.shapes.reach import may_meet
 
@@ -52,12 +53,14 @@ def _clash(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem | No
         return None
     if not may_meet(one.shape, other.shape):
         return None
+    assert not isinstance(one.shape, Plane)  # it encloses no medium
+    assert not isinstance(other.shape, Plane)
     smaller = min(one.shape.bounding_sphere()[1], other.shape.bounding_sphere()[1])
     depth = overlap_depth(one.shape, other.shape)
     if depth <= _TOUCH * smaller:
         return None
     names = f"{other.name or f'objects[{j}]'!r} and {one.name or f'objects[{i}]'!r}"
-    allowed = f"a priority other than {priority} for the one that fills the space where they overlap"
+    allowed = f"a priority other than {priority} for the one that fills the space they share"
     message = (
         f"{names} claim the same space, {depth:.3g} m deep, with different media and the same"
         f" priority {priority}; allowed: {allowed}, or shapes apart from each other"

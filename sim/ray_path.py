@@ -21,11 +21,14 @@ class RayPath:
             bounds, or one unit further where it has left them already.
         directions: (n, 3), unit, of each segment.
         events: n strings, what happened at the end of each segment: "refract", "reflect",
-            "total internal reflection", "deposit", "absorb", "escape", or "limit" if the ray
-            was still going after `max_interactions`.
+            "total internal reflection", "mirror" (a metal too), "pass" (a face with the same
+            medium on both sides, hidden by another solid), "deposit", "absorb", "escape", or
+            "limit" if the ray was still going after `max_interactions`.
         objects: n names of the objects met, "" where nothing was.
         reflectances: (n,) mean reflectance of s and p light at each vertex; 0 where the ray
             ends.
+        absorptances: (n,) fraction of the flux lost on each segment to the medium, and to the
+            mirror or metal at its end.
         wavelength_nm: of the ray.
     """
 
@@ -34,6 +37,7 @@ class RayPath:
     events: tuple[str, ...]
     objects: tuple[str, ...]
     reflectances: FloatArray
+    absorptances: FloatArray
     wavelength_nm: float
 
     @property
@@ -48,4 +52,4 @@ class RayPath:
             {"refract": 1.0 - r, "reflect": r}.get(event, 1.0)
             for event, r in zip(self.events, self.reflectances, strict=True)
         ]
-        return float(np.prod(factors))
+        return float(np.prod(factors) * np.prod(1.0 - self.absorptances))

@@ -138,7 +138,7 @@ def compile_scene(
     data = structs.Scene()
     places = _fill_shapes(data, scene, origin, precision, device)
     touch = touch_distance(bounding_radius(scene, origin), precision)
-    near = [[] for _ in scene.objects]
+    near: list[list[int]] = [[] for _ in scene.objects]
     if features.interfaces:
         near = find_neighbours(scene, _NEARNESS * touch)
     bodies = _bodies(media, scene, near, disperses=features.dispersion)

@@ -1,8 +1,6 @@
 """What a scene is made of: which media there are, where, and on which footing their indices are."""
 
-from dataclasses import dataclass
-
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import scenes
 from scenes.media import REFERENCE_MEDIA

@@ -132,8 +132,8 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
         """What the surface does. `normal` faces the incoming ray; `side` 1 is the inside or back.
 
         `prim2` and `face2` are a second surface in the same place, −1 for none. `medium` is the
-        one on the ray's side. `absorbed` is the part of the flux that is lost on the way here and,
-        at a mirror or a metal, to the surface.
+        one on the ray's side, `alpha` its absorption coefficient [1/m]. `absorbed` is the part of
+        the flux that is lost on the way here and, at a mirror or a metal, to the surface.
 
         At a boundary: `eta` is η_i/η_t, `reflectance` the mean of R_s and R_p, `total` 1 where
         the reflection is total (then `refracted` is unset). A mirror or a metal is `opaque`, and
@@ -154,6 +154,7 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
         total: int
         opaque: int
         absorbed: real
+        alpha: real
         eta: real
         reflectance: real
         reflected: vec3
@@ -204,6 +205,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         loss_first: int  # knots of its absorption coefficient [1/m]
         loss_count: int
         varies: int  # 1 if index or absorption depend on the wavelength
+        tints: int  # 1 if absorption does
 
     @wp.struct
     class Finish:

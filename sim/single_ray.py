@@ -18,7 +18,13 @@ from sim.errors import SettingsError
 from sim.features import Features
 from sim.ray_path import RayPath
 from sim.scene_data import CompiledScene, compile_scene
-from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+from sim.transport import (
+    EVENT_ABSORB,
+    EVENT_BOUNDARY,
+    EVENT_DEPOSIT,
+    EVENT_PASS,
+    make_transport,
+)
 from spectra import air_index
 
 __all__ = ["trace_compiled_rays", "trace_ray"]
@@ -31,7 +37,12 @@ _REFLECT = 2
 _TOTAL = 3
 _DEPOSIT = 4
 _ABSORB = 5
-_NAMES = ("escape", "refract", "reflect", "total internal reflection", "deposit", "absorb")
+_MIRROR = 6
+_PASS = 7
+_NAMES = (
+    "escape", "refract", "reflect", "total internal reflection", "deposit", "absorb", "mirror",
+    "pass",
+)  # fmt: skip
 
 
 @functools.cache
@@ -54,6 +65,7 @@ def make_trace_single(precision: str, features: Features) -> Any:
         out_events: wp.array2d(dtype=int),
         out_prims: wp.array2d(dtype=int),
         out_reflectances: wp.array2d(dtype=real),
+        out_absorbed: wp.array2d(dtype=real),
         out_counts: wp.array(dtype=int),
     ):
         i = wp.tid()
@@ -62,35 +74,46 @@ def make_trace_single(precision: str, features: Features) -> Any:
         ray.direction = wp.normalize(directions[i])
         ray.prim = -1
         ray.face = -1
+        ray.prim2 = -1
         indices = media_indices(scene, wavelengths_nm[i])
         count = int(0)
+        boundaries = int(0)
         for step in range(out_events.shape[1]):
             met = interact(scene, ray, indices)
             out_directions[i, step] = ray.direction
             out_points[i, step] = met.point
             out_prims[i, step] = met.prim
+            out_absorbed[i, step] = met.absorbed
             count += 1
-            if met.event != EVENT_BOUNDARY:
+            ray.origin = met.point
+            ray.prim = met.prim
+            ray.face = met.face
+            ray.prim2 = met.prim2
+            ray.face2 = met.face2
+            if met.event == EVENT_PASS:
+                out_events[i, step] = _PASS
+            elif met.event != EVENT_BOUNDARY:
                 out_events[i, step] = _ESCAPE
                 if met.event == EVENT_DEPOSIT:
                     out_events[i, step] = _DEPOSIT
                 elif met.event == EVENT_ABSORB:
                     out_events[i, step] = _ABSORB
                 break
-            out_reflectances[i, step] = met.reflectance
-            out_events[i, step] = _REFRACT
-            ray.origin = met.point
-            ray.prim = met.prim
-            ray.face = met.face
-            if met.total == 1:
-                out_events[i, step] = _TOTAL
-                ray.direction = met.reflected
             else:
-                ray.direction = met.refracted
-                if step < reflects.shape[0]:
-                    if reflects[step] == 1:
-                        out_events[i, step] = _REFLECT
-                        ray.direction = met.reflected
+                out_reflectances[i, step] = met.reflectance
+                out_events[i, step] = _REFRACT
+                if met.total == 1:
+                    out_events[i, step] = _TOTAL
+                    if met.opaque == 1:
+                        out_events[i, step] = _MIRROR
+                    ray.direction = met.reflected
+                else:
+                    ray.direction = met.refracted
+                    if boundaries < reflects.shape[0]:
+                        if reflects[boundaries] == 1:
+                            out_events[i, step] = _REFLECT
+                            ray.direction = met.reflected
+                boundaries += 1
         out_counts[i] = count
 
     return trace_single
@@ -173,6 +196,7 @@ def trace_compiled_rays(
     events = wp.zeros(size, dtype=int, device=device)
     prims = wp.zeros(size, dtype=int, device=device)
     reflectances = wp.zeros(size, dtype=structs.real, device=device)
+    absorbed = wp.zeros(size, dtype=structs.real, device=device)
     counts = wp.zeros(rays, dtype=int, device=device)
     wp.launch(
         make_trace_single(compiled.precision, compiled.features),
@@ -184,12 +208,12 @@ def trace_compiled_rays(
             wp.array(wavelengths_nm, dtype=structs.real, device=device),
             wp.array(reflects, dtype=int, device=device),
         ],
-        outputs=[points, ways, events, prims, reflectances, counts],
+        outputs=[points, ways, events, prims, reflectances, absorbed, counts],
         device=device,
     )
     record = _Record(
         compiled, local, points.numpy(), ways.numpy(), events.numpy(), prims.numpy(),
-        reflectances.numpy(), counts.numpy(), wavelengths_nm,
+        reflectances.numpy(), absorbed.numpy(), counts.numpy(), wavelengths_nm,
     )
     return [record.path(i) for i in range(rays)]
 
@@ -205,6 +229,7 @@ class _Record:
     events: npt.NDArray[Any]
     prims: npt.NDArray[Any]
     reflectances: npt.NDArray[Any]
+    absorbed: npt.NDArray[Any]
     counts: npt.NDArray[Any]
     wavelengths_nm: FloatArray
 
@@ -225,6 +250,7 @@ class _Record:
             events=tuple(events),
             objects=tuple(names[prim] if prim >= 0 else "" for prim in self.prims[i, :n]),
             reflectances=self.reflectances[i, :n].astype(np.float64),
+            absorptances=self.absorbed[i, :n].astype(np.float64),
             wavelength_nm=float(self.wavelengths_nm[i]),
         )
 

@@ -55,7 +55,7 @@ EVENT_DEPOSIT = wp.constant(2)
 EVENT_ABSORB = wp.constant(3)
 """An absorber: the light ends here."""
 EVENT_PASS = wp.constant(4)
-"""A face with the same medium on both sides, hidden by another solid: the light goes straight on."""
+"""A face hidden by another solid, the same medium on both sides: the light goes straight on."""
 
 
 @functools.cache
@@ -199,7 +199,9 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         return 0, reflectance, reflected, refracted
 
     @wp.func
-    def finish_reflectance(scene: scene_type, finish: int, cos_theta_i: real, indices: indices_type, medium: int):
+    def finish_reflectance(
+        scene: scene_type, finish: int, cos_theta_i: real, indices: indices_type, medium: int
+    ):
         """Of a mirror by its table, of a metal by Fresnel's equations with a complex index."""
         row = scene.finishes[finish]
         wavelength_nm = wavelength_of(indices)
@@ -288,10 +290,10 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                         scene, body.finish, cos_theta_i, indices, met.medium
                     )
         if wp.static(features.absorption):
-            lost = absorbed_fraction(absorption_of(indices, met.medium), hit.t)
+            met.alpha = absorption_of(indices, met.medium)
+            lost = absorbed_fraction(met.alpha, hit.t)
             met.absorbed += lost - lost * met.absorbed
-            if lost > real(0.0):
-                met.dispersive = met.dispersive | scene.media[met.medium].tints
+            met.dispersive = met.dispersive | scene.media[met.medium].tints
         return met
 
     @wp.func

@@ -34,8 +34,8 @@ def reach(shape: Any, direction: FloatArray) -> float:
     middle = float(np.dot(shape.position, direction))
     if isinstance(shape, FlatRectangle):
         u, v, _ = shape.frame()
-        width, height = shape.size
-        return middle + 0.5 * (width * abs(float(u @ direction)) + height * abs(float(v @ direction)))
+        half_u, half_v = 0.5 * shape.size[0], 0.5 * shape.size[1]
+        return middle + half_u * abs(float(u @ direction)) + half_v * abs(float(v @ direction))
     if isinstance(shape, Disk):
         return middle + shape.radius * _sine(shape.normal, direction)
     if isinstance(shape, Lens):

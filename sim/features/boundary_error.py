@@ -28,7 +28,7 @@ import numpy as np
 from sim.features.registry import Subject
 from spectra import Medium, SpectraError, Tabulated, air_index
 
-__all__ = ["boundary_error", "path_error", "relative_variations"]
+__all__ = ["BOUNDARIES", "boundary_error", "path_error", "relative_variations"]
 
 BOUNDARIES = 8
 """Boundaries that count: behind these, glass has kept a photon's lesser part."""

@@ -59,7 +59,7 @@ def _judge_absorption(subject: Subject) -> Verdict:
             continue
         if medium.absorption.wavelength_nm:
             knots, values = medium.absorption.wavelength_nm, medium.absorption.napierian_per_m
-            alpha = max(np.max(np.interp(wavelength_nm, knots, values)), max(values))
+            alpha = max(np.max(np.interp(wavelength_nm, knots, values)), *values)
         else:
             alpha = max(medium.absorption.napierian_per_m)
         if alpha > strongest:

@@ -30,7 +30,7 @@ from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
 from sim.sampling.counter import hash64
 from sim.sampling.kronecker import r1_point, r2_point
 from sim.sampling.roulette import choose_branches
-from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, EVENT_PASS, make_transport
 
 __all__ = ["make_film_struct", "make_render_camera"]
 
@@ -81,6 +81,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
     look = make_camera_functions(precision)
+    losses = features.absorption or features.finishes
     gather = make_gather(precision, features)
 
     @wp.func
@@ -115,42 +116,56 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 ray.direction = pending.direction
                 ray.prim = pending.prim
                 ray.face = pending.face
+                ray.prim2 = pending.prim2
+                ray.face2 = pending.face2
                 throughput = stack_throughput[depth]
                 dispersed = stack_dispersed[depth]
                 alive = bool(True)
             met = interact(scene, ray, indices)
-            if met.event == EVENT_BOUNDARY:
-                if met.dispersive == 1:
-                    met_dispersive = 1
-                    dispersed = 1
-                if met.dispersive == 1 and sight.band == ALL_BANDS:
-                    alive = False
-                else:
-                    stronger, weaker, refracts = split(met)
-                    side = throughput * met.reflectance
-                    main = (throughput - side) * met.eta * met.eta
-                    if refracts == 0:
-                        main = throughput * met.reflectance
-                        side = (throughput - main) * met.eta * met.eta
-                    ray.origin = met.point
-                    ray.direction = stronger
-                    ray.prim = met.prim
-                    ray.face = met.face
-                    throughput, side, swapped = choose_branches(
-                        main, side, threshold, depth < STACK_SIZE, sight.key, wp.uint64(step)
-                    )
-                    if swapped:
-                        ray.direction = weaker
-                    if side > real(0.0):
-                        side_ray = ray_type()
-                        side_ray.origin = met.point
-                        side_ray.direction = weaker
-                        side_ray.prim = met.prim
-                        side_ray.face = met.face
-                        stack_ray[depth] = side_ray
-                        stack_throughput[depth] = side
-                        stack_dispersed[depth] = dispersed
-                        depth += 1
+            if wp.static(losses):
+                throughput -= throughput * met.absorbed
+            if met.dispersive == 1:
+                met_dispersive = 1
+                dispersed = 1
+            if met.dispersive == 1 and sight.band == ALL_BANDS:
+                alive = False
+            elif met.event == EVENT_PASS:
+                ray.origin = met.point
+                ray.prim = met.prim
+                ray.face = met.face
+                ray.prim2 = met.prim2
+                ray.face2 = met.face2
+            elif met.event == EVENT_BOUNDARY:
+                stronger, weaker, refracts = split(met)
+                side = throughput * met.reflectance
+                main = (throughput - side) * met.eta * met.eta
+                if refracts == 0:
+                    main = throughput * met.reflectance
+                    side = (throughput - main) * met.eta * met.eta
+                ray.origin = met.point
+                ray.direction = stronger
+                ray.prim = met.prim
+                ray.face = met.face
+                ray.prim2 = met.prim2
+                ray.face2 = met.face2
+                throughput, side, swapped = choose_branches(
+                    main, side, threshold, depth < STACK_SIZE, sight.key, wp.uint64(step)
+                )
+                if swapped:
+                    ray.direction = weaker
+                if side > real(0.0):
+                    side_ray = ray_type()
+                    side_ray.origin = met.point
+                    side_ray.direction = weaker
+                    side_ray.prim = met.prim
+                    side_ray.face = met.face
+                    side_ray.prim2 = met.prim2
+                    side_ray.face2 = met.face2
+                    stack_ray[depth] = side_ray
+                    stack_throughput[depth] = side
+                    stack_dispersed[depth] = dispersed
+                    depth += 1
+                alive = throughput > real(0.0)
             else:
                 alive = False
                 if met.event == EVENT_DEPOSIT and (sight.band == ALL_BANDS or dispersed == 1):
@@ -177,6 +192,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
         )
         ray.prim = -1
         ray.face = -1
+        ray.prim2 = -1
         sight = sight_type()
         sight.row = pixel
         sight.band = ALL_BANDS

@@ -20,6 +20,7 @@ import warp as wp
 
 from sim.features import Features
 from sim.image.sight import make_sight_struct
+from sim.optics.absorption import absorbed_fraction
 from sim.photons.densities import make_density_functions
 from sim.photons.lamp_structs import (
     BEAM,
@@ -203,8 +204,12 @@ def make_direct_light(precision: str, features: Features) -> object:
                 ray.direction = -way
                 ray.prim = met.prim
                 ray.face = met.face
+                ray.prim2 = met.prim2
+                ray.face2 = met.face2
                 hit = intersect(scene, ray)
                 if hit.prim < 0 or hit.t >= distance * real(CLEARANCE):
+                    if wp.static(features.absorption):
+                        irradiance -= irradiance * absorbed_fraction(met.alpha, distance)
                     total += irradiance
             k += 1
         return total / real(rays)

@@ -15,7 +15,7 @@ import warp as wp
 from sim.features import Features
 from sim.image.camera import make_camera_functions, make_camera_struct
 from sim.scene_data import CompiledScene
-from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, EVENT_PASS, make_transport
 
 __all__ = ["Survey", "make_measure_footprints", "survey_view"]
 
@@ -59,6 +59,7 @@ def make_measure_footprints(precision: str, features: Features) -> Any:
         pixel = wp.length(camera.step_right)
         ray.prim = -1
         ray.face = -1
+        ray.prim2 = -1
         indices = media_indices(scene, wavelength_nm)
         axial = real(0.0)
         out_prim[i] = -1
@@ -71,15 +72,18 @@ def make_measure_footprints(precision: str, features: Features) -> Any:
                 out_width[i] = pixel * axial / wp.sqrt(wp.max(cos_theta, real(0.05)))
                 out_point[i] = met.point
                 out_prim[i] = met.prim
-            if met.event != EVENT_BOUNDARY:
+            if met.event != EVENT_BOUNDARY and met.event != EVENT_PASS:
                 break
             ray.origin = met.point
             ray.prim = met.prim
             ray.face = met.face
-            ray.direction = met.refracted
-            # One sample in four looks at what the glass reflects first.
-            if met.reflectance > real(0.5) or (boundary == 0 and i % 4 == 3):
-                ray.direction = met.reflected
+            ray.prim2 = met.prim2
+            ray.face2 = met.face2
+            if met.event == EVENT_BOUNDARY:
+                ray.direction = met.refracted
+                # One sample in four looks at what the glass reflects first.
+                if met.reflectance > real(0.5) or (boundary == 0 and i % 4 == 3):
+                    ray.direction = met.reflected
 
     return measure_footprints
 

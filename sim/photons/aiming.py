@@ -136,7 +136,7 @@ def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[
     found = list(enumerate(compiled.scene.objects))
     # A plane without end cannot be aimed at.
     finite = [(prim, one) for prim, one in found if not isinstance(one.shape, scenes.Plane)]
-    specular = [one for _, one in finite if isinstance(one.material, scenes.Dielectric)]
+    specular = [one for _, one in finite if scenes.is_specular(one.material)]
     receivers = [
         (prim, one, 1.0 if view is None else max(view.fraction(prim), SMALLEST_WEIGHT))
         for prim, one in finite
@@ -193,7 +193,7 @@ def _cone(share: float, compiled: CompiledScene, item: scenes.SceneObject, margi
         np.eye(3),
         np.zeros(2),
         radius + margin,
-        isinstance(item.material, scenes.Dielectric),
+        scenes.is_specular(item.material),
         np.zeros(0),
     )
 

@@ -184,6 +184,7 @@ def make_emission(precision: str, sampler: str = "sobol") -> object:
         ray = ray_type()
         ray.prim = -1
         ray.face = -1
+        ray.prim2 = -1
         if emitter.kind == BEAM:
             # A beam aims itself: its profile gets the best two dimensions.
             if emitter.round == 1:

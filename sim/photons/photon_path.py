@@ -25,7 +25,13 @@ from sim.photons.photon_structs import (
     surface_key,
 )
 from sim.sampling.roulette import choose_branches, play_roulette
-from sim.transport import EVENT_ABSORB, EVENT_BOUNDARY, EVENT_DEPOSIT, make_transport
+from sim.transport import (
+    EVENT_ABSORB,
+    EVENT_BOUNDARY,
+    EVENT_DEPOSIT,
+    EVENT_PASS,
+    make_transport,
+)
 
 __all__ = ["COLOURS", "make_trace_photons"]
 
@@ -52,6 +58,7 @@ def make_follow(precision: str, features: Features) -> object:
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
     intersect = transport.intersect
     both_branches = features.method.branching == "weights"
+    losses = features.absorption or features.finishes
 
     @wp.func
     def store(
@@ -97,8 +104,12 @@ def make_follow(precision: str, features: Features) -> object:
         step = int(0)
         while step < job.max_interactions:
             met = scatter(scene, ray, hit, indices)
+            history = mark_dispersed(history, met.dispersive)
+            if wp.static(losses):
+                lost = flux * met.absorbed
+                absorbed += lost
+                flux -= lost
             if met.event == EVENT_BOUNDARY:
-                history = mark_dispersed(history, met.dispersive)
                 stronger, weaker, refracts = split(met)
                 side_flux = flux * met.reflectance
                 if refracts == 0:
@@ -109,6 +120,8 @@ def make_follow(precision: str, features: Features) -> object:
                 ray.direction = stronger
                 ray.prim = met.prim
                 ray.face = met.face
+                ray.prim2 = met.prim2
+                ray.face2 = met.face2
                 draw = draws + wp.uint64(step)
                 before = flux
                 room = depth < STACK_SIZE
@@ -126,6 +139,8 @@ def make_follow(precision: str, features: Features) -> object:
                     side_ray.direction = weaker
                     side_ray.prim = met.prim
                     side_ray.face = met.face
+                    side_ray.prim2 = met.prim2
+                    side_ray.face2 = met.face2
                     stack_ray[depth] = side_ray
                     stack_flux[depth] = side_flux
                     stack_history[depth] = side_history
@@ -134,6 +149,16 @@ def make_follow(precision: str, features: Features) -> object:
                 # fainter, would use up the interactions that the branches behind it need.
                 flux = play_roulette(flux, threshold, job.key + wp.uint64(2), draw)
                 culled += before - flux - side_flux
+                alive = flux > real(0.0)
+            elif met.event == EVENT_PASS:
+                # It is an event all the same: shadow rays stop here, so that the light behind is
+                # the photons'.
+                history = add_event(history, 1)
+                ray.origin = met.point
+                ray.prim = met.prim
+                ray.face = met.face
+                ray.prim2 = met.prim2
+                ray.face2 = met.face2
                 alive = flux > real(0.0)
             else:
                 alive = False
@@ -161,6 +186,8 @@ def make_follow(precision: str, features: Features) -> object:
                 ray.direction = pending.direction
                 ray.prim = pending.prim
                 ray.face = pending.face
+                ray.prim2 = pending.prim2
+                ray.face2 = pending.face2
                 flux = stack_flux[depth]
                 history = stack_history[depth]
                 alive = True

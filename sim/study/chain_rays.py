@@ -20,7 +20,7 @@ from sim.features import Features
 from sim.geometry.flat import intersect_plane, plane_coordinates
 from sim.scene_data import CompiledScene
 from sim.study.receiver_bins import ReceiverBins
-from sim.transport import EVENT_BOUNDARY, make_transport
+from sim.transport import EVENT_BOUNDARY, EVENT_PASS, make_transport
 
 __all__ = ["Chain", "Landings", "make_chain", "trace_chain"]
 
@@ -83,6 +83,7 @@ def make_trace_chain(precision: str, features: Features) -> Any:
     real, vec3, interact = structs.real, structs.vec3, transport.interact
     scene_type, ray_type, met_type = transport.Scene, transport.Ray, transport.Interaction
     media_indices = transport.media_indices
+    losses = features.absorption or features.finishes
 
     @wp.func
     def land(chain: chain_type, ray: ray_type, met: met_type):
@@ -109,6 +110,7 @@ def make_trace_chain(precision: str, features: Features) -> Any:
         ray.direction = directions[i]
         ray.prim = -1
         ray.face = -1
+        ray.prim2 = -1
         indices = media_indices(scene, wavelengths_nm[i])
         share = real(1.0)
         signature = wp.uint64(14695981039346656037)
@@ -116,18 +118,22 @@ def make_trace_chain(precision: str, features: Features) -> Any:
         while step <= chain.limit:
             met = interact(scene, ray, indices)
             boundary = met.event == EVENT_BOUNDARY
+            if wp.static(losses):
+                share -= share * met.absorbed
             if step == chain.length or (chain.length < 0 and not boundary):
                 landed, u, v = land(chain, ray, met)
                 if landed:
                     out_landings[i] = vec3(u, v, share)
                     out_signatures[i] = signature
                 break
-            if not boundary:
+            if not boundary and met.event != EVENT_PASS:
                 break
             reflects = int(0)
             if chain.length >= 0:
                 reflects = chain.reflects[step]
-            if reflects == 1:
+            if met.event == EVENT_PASS:
+                step += 0
+            elif reflects == 1 or met.opaque == 1:
                 share *= met.reflectance
                 ray.direction = met.reflected
             elif met.total == 1:
@@ -138,6 +144,8 @@ def make_trace_chain(precision: str, features: Features) -> Any:
             ray.origin = met.point
             ray.prim = met.prim
             ray.face = met.face
+            ray.prim2 = met.prim2
+            ray.face2 = met.face2
             # FNV-1a over the faces met (Fowler, Noll & Vo): 64 bits tell sequences apart.
             signature = (signature ^ wp.uint64(met.prim + 1)) * wp.uint64(1099511628211)
             signature = (signature ^ wp.uint64(met.face + 1)) * wp.uint64(1099511628211)
