@@ -107,8 +107,8 @@ class Absorber(SceneModel):
 
 
 def is_specular(material: object) -> bool:
-    """Whether a surface sends light on in single directions, by refraction or reflection."""
-    return isinstance(material, Dielectric | Mirror | Metal)
+    """Whether a surface sends light on in single directions: refracted, reflected or straight."""
+    return isinstance(material, Dielectric | Mirror | Metal | Polariser)
 
 
 Material = Annotated[

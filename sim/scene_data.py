@@ -28,6 +28,7 @@ from sim.scene_structs import (
     LAMBERTIAN,
     METAL,
     MIRROR,
+    POLARISER,
     SHAPE_FLAT,
     SHAPE_LENS,
     SHAPE_POLYHEDRON,
@@ -147,6 +148,9 @@ def compile_scene(
     neighbours = np.array([*itertools.chain(*near), -1], dtype=np.int32)
     data.neighbours = wp.array(neighbours, dtype=int, device=device)
     data.touch = touch
+    data.absorbing_axes = wp.array(
+        _absorbing_axes(scene), dtype=structs.vec3, device=device
+    )
     fill_optics(data, media, precision, device, disperses=features.dispersion)
     return CompiledScene(scene, precision, device, features, media.media, origin, data)
 
@@ -238,6 +242,8 @@ def _bodies(
         elif isinstance(material, scenes.Mirror | scenes.Metal):
             kind = MIRROR if isinstance(material, scenes.Mirror) else METAL
             varies = material.is_coloured
+        elif isinstance(material, scenes.Polariser):
+            kind = POLARISER
         else:
             kind = LAMBERTIAN if isinstance(material, scenes.Lambertian) else ABSORBER
         count = len(near[prim])
@@ -246,3 +252,13 @@ def _bodies(
         )
         first += count
     return rows
+
+
+def _absorbing_axes(scene: scenes.Scene) -> FloatArray:
+    """(n, 3), each object's absorbing axis, 0 where it has none; never of length zero."""
+    axes = np.zeros((max(1, len(scene.objects)), 3))
+    for prim, item in enumerate(scene.objects):
+        if isinstance(item.material, scenes.Polariser):
+            assert isinstance(item.shape, scenes.Rectangle | scenes.Disk | scenes.Plane)
+            axes[prim] = item.material.absorbing_axis(item.shape.normal)
+    return axes

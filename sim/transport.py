@@ -34,7 +34,15 @@ from sim.optics.dielectric import (
 )
 from sim.optics.dispersion import tabulated_index
 from sim.path_media import make_media_functions
-from sim.scene_structs import DIELECTRIC, LAMBERTIAN, METAL, MIRROR, make_scene_structs
+from sim.polarised_light import make_surface_matrices
+from sim.scene_structs import (
+    DIELECTRIC,
+    LAMBERTIAN,
+    METAL,
+    MIRROR,
+    POLARISER,
+    make_scene_structs,
+)
 from sim.surroundings import make_surroundings
 
 __all__ = [
@@ -167,7 +175,7 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         `interact(scene, ray, indices)`, which is both in one, and `split(interaction)`.
     """
     structs = make_scene_structs(precision)
-    real, vec3 = structs.real, structs.vec3
+    real, vec3, vec4 = structs.real, structs.vec3, structs.vec4
     scene_type, ray_type = structs.Scene, structs.Ray
     interaction_type, hit_type = structs.Interaction, structs.Hit
     intersect = make_intersect(precision, features)
@@ -175,6 +183,9 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
     indices_type, absorption_of = media.Indices, media.absorption_of
     wavelength_of = media.wavelength_of
     surroundings_of = make_surroundings(precision, features).surroundings_of
+    polarised = features.polarises
+    matrices = make_surface_matrices(precision, features)
+    cross_polarised, finish_matrix = matrices.cross_polarised, matrices.finish_matrix
 
     @wp.func
     def cross_boundary(direction: vec3, normal: vec3, eta: real):
@@ -199,19 +210,22 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         return 0, reflectance, reflected, refracted
 
     @wp.func
-    def finish_reflectance(
-        scene: scene_type, finish: int, cos_theta_i: real, indices: indices_type, medium: int
-    ):
-        """Of a mirror by its table, of a metal by Fresnel's equations with a complex index."""
+    def finish_constants(scene: scene_type, finish: int, indices: indices_type, medium: int):
+        """A mirror's reflectance and −1, by its table; a metal's n and k, relative to `medium`."""
         row = scene.finishes[finish]
         wavelength_nm = wavelength_of(indices)
         value = tabulated_index(scene.knots_nm, scene.cubics, row.first, row.count, wavelength_nm)
         if row.k_count == 0:
-            return value
+            return value, real(-1.0)
         k = tabulated_index(scene.knots_nm, scene.cubics, row.k_first, row.k_count, wavelength_nm)
-        r_s, r_p = conductor_reflectance(
-            cos_theta_i, value / indices[medium], k / indices[medium]
-        )
+        return value / indices[medium], k / indices[medium]
+
+    @wp.func
+    def finish_reflectance(value: real, k: real, cos_theta_i: real):
+        """Of a mirror as it is, of a metal by Fresnel's equations with a complex index."""
+        if k < real(0.0):
+            return value
+        r_s, r_p = conductor_reflectance(cos_theta_i, value, k)
         return real(0.5) * (r_s + r_p)
 
     @wp.func
@@ -268,14 +282,25 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                             met.event = EVENT_PASS
                             met.dispersive = 0
                     eta = indices[met.medium] / indices[beyond]
-                    total, reflectance, reflected, refracted = cross_boundary(
-                        ray.direction, met.normal, eta
-                    )
+                    if wp.static(not polarised):
+                        total, reflectance, reflected, refracted = cross_boundary(
+                            ray.direction, met.normal, eta
+                        )
+                        met.total = total
+                        met.reflectance = reflectance
+                        met.reflected = reflected
+                        met.refracted = refracted
+                    if wp.static(polarised):
+                        whole, matrix, together, mirrored, bent = cross_polarised(
+                            ray.direction, met.normal, eta
+                        )
+                        met.total = whole
+                        met.matrix = matrix
+                        met.together = together
+                        met.reflectance = matrix[0]
+                        met.reflected = mirrored
+                        met.refracted = bent
                     met.eta = eta
-                    met.total = total
-                    met.reflectance = reflectance
-                    met.reflected = reflected
-                    met.refracted = refracted
             if wp.static(features.finishes):
                 if body.material == MIRROR or body.material == METAL:
                     met.event = EVENT_BOUNDARY
@@ -286,9 +311,22 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                     met.reflectance = real(1.0)
                     met.reflected = reflect(ray.direction, met.normal, cos_theta_i)
                     met.refracted = met.reflected
-                    met.absorbed = real(1.0) - finish_reflectance(
-                        scene, body.finish, cos_theta_i, indices, met.medium
-                    )
+                    value, k = finish_constants(scene, body.finish, indices, met.medium)
+                    if wp.static(not polarised):
+                        met.absorbed = real(1.0) - finish_reflectance(value, k, cos_theta_i)
+                    if wp.static(polarised):
+                        met.matrix = finish_matrix(cos_theta_i, value, k)
+            if wp.static(features.polarisers):
+                if body.material == POLARISER:
+                    met.event = EVENT_BOUNDARY
+                    met.filters = 1
+                    met.eta = real(1.0)
+                    met.reflected = ray.direction
+                    met.refracted = ray.direction
+                    if wp.static(not polarised):
+                        met.absorbed = real(0.5)
+                    if wp.static(polarised):
+                        met.matrix = vec4(real(0.5), real(-0.5), real(0.0), real(0.0))
         if wp.static(features.absorption):
             met.alpha = absorption_of(indices, met.medium)
             lost = absorbed_fraction(met.alpha, hit.t)

@@ -1,6 +1,6 @@
 """Features: what happens to light at boundaries, and how receivers learn of it."""
 
-from scenes import Dielectric, Metal, Mirror
+from scenes import Dielectric, Metal, Mirror, Polariser
 from sim.features.boundary_error import path_error, relative_variations
 from sim.features.registry import (
     Cost,
@@ -101,6 +101,8 @@ def _judge_undispersed(subject: Subject) -> Verdict:
                 return needed(f"light keeps its colours together in {item.name}")
         elif isinstance(item.material, Mirror | Metal) and not item.material.is_coloured:
             return needed(f"light keeps its colours together on {item.name}")
+        elif isinstance(item.material, Polariser):
+            return needed(f"light keeps its colours together through {item.name}")
     return null("what is in the map has met glass, and all glass is dispersive")
 
 

@@ -97,7 +97,8 @@ def plan_features(scene: scenes.Scene, settings: ResolvedSettings) -> FeaturePla
     made_of = collect_media(scene)
     return judge_features(
         Subject(
-            scene, made_of.media, made_of.air_powers, settings.direct_light, settings.precision
+            scene, made_of.media, made_of.air_powers, settings.direct_light, settings.precision,
+            settings.polarisation,
         ),
         tolerance=settings.omission_tolerance,
         everything=settings.features == "all",

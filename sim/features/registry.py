@@ -41,6 +41,7 @@ class Subject:
         air_powers: of each medium, the power of the index of air that its index is multiplied by.
         direct_light: the setting of this name; None: not known.
         precision: the setting of this name; None: not known.
+        polarisation: the setting of this name.
     """
 
     scene: scenes.Scene
@@ -48,6 +49,7 @@ class Subject:
     air_powers: tuple[int, ...]
     direct_light: str | None = None
     precision: str | None = None
+    polarisation: str = "auto"
 
     @cached_property
     def has_boundaries(self) -> bool:
@@ -72,6 +74,15 @@ class Subject:
             item.material
             for item in self.scene.objects
             if isinstance(item.material, scenes.Mirror | scenes.Metal)
+        )
+
+    @cached_property
+    def polarisers(self) -> tuple[scenes.Polariser, ...]:
+        """The polarisers, one an object that is one."""
+        return tuple(
+            item.material
+            for item in self.scene.objects
+            if isinstance(item.material, scenes.Polariser)
         )
 
 

@@ -27,6 +27,7 @@ from sim.features import Features
 from sim.image.camera import make_camera_functions, make_camera_struct
 from sim.image.gather import make_gather
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
+from sim.polarised_light import make_light
 from sim.sampling.counter import hash64
 from sim.sampling.kronecker import r1_point, r2_point
 from sim.sampling.roulette import choose_branches
@@ -75,13 +76,18 @@ def make_film_struct() -> Any:
 def make_render_camera(precision: str, features: Features) -> Any:
     """Kernel `render_camera(start, scene, camera, lights, film)`."""
     transport = make_transport(precision, features)
-    real, interact = transport.real, transport.interact
+    real, vec3, interact = transport.real, transport.vec3, transport.interact
     media_indices, split = transport.media_indices, transport.split
     scene_type, ray_type = transport.Scene, transport.Ray
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
     look = make_camera_functions(precision)
-    losses = features.absorption or features.finishes
+    losses = features.absorption or features.finishes or features.polarisers
+    mode = features.light_of("camera")
+    polarised = mode != "averaged"
+    carried = make_light(precision, mode, polarisers=features.polarisers, towards_eye=True)
+    light_type, frame_type, start = carried.Light, carried.Frame, carried.start
+    turn, judge, send = carried.turn, carried.judge, carried.send
     gather = make_gather(precision, features)
 
     @wp.func
@@ -97,6 +103,12 @@ def make_render_camera(precision: str, features: Features) -> Any:
         stack_ray = wp.zeros(shape=(8,), dtype=ray_type)
         stack_throughput = wp.zeros(shape=(8,), dtype=real)
         stack_dispersed = wp.zeros(shape=(8,), dtype=int)
+        if wp.static(polarised):
+            # What the eye is sensitive to, of the light that comes against the path: all alike.
+            up = vec3(real(0.0), real(1.0), real(0.0))
+            light, frame = start(vec3(), up, camera_ray.direction)
+            stack_light = wp.zeros(shape=(8,), dtype=light_type)
+            stack_frame = wp.zeros(shape=(8,), dtype=frame_type)
         depth = int(0)
         alive = bool(True)
         ray = camera_ray
@@ -118,10 +130,19 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 ray.face = pending.face
                 ray.prim2 = pending.prim2
                 ray.face2 = pending.face2
+                if wp.static(polarised):
+                    light = stack_light[depth]
+                    frame = stack_frame[depth]
                 throughput = stack_throughput[depth]
                 dispersed = stack_dispersed[depth]
                 alive = bool(True)
             met = interact(scene, ray, indices)
+            if wp.static(polarised):
+                if met.event == EVENT_BOUNDARY:
+                    light, frame = turn(scene, met, ray.direction, light, frame)
+                    reflectance, lost = judge(met, light)
+                    met.reflectance = reflectance
+                    met.absorbed = lost
             if wp.static(losses):
                 throughput -= throughput * met.absorbed
             if met.dispersive == 1:
@@ -153,6 +174,12 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 )
                 if swapped:
                     ray.direction = weaker
+                    refracts = 1 - refracts
+                if wp.static(polarised):
+                    if side > real(0.0):
+                        stack_light[depth] = send(met, light, 1 - refracts)
+                        stack_frame[depth] = frame
+                    light = send(met, light, refracts)
                 if side > real(0.0):
                     side_ray = ray_type()
                     side_ray.origin = met.point

@@ -30,6 +30,7 @@ import warp as wp
 __all__ = [
     "apply_surface",
     "conductor_matrix",
+    "frame_across",
     "fresnel_amplitudes",
     "share_of_flux",
     "total_reflection_phase",
@@ -102,6 +103,28 @@ def conductor_matrix(cos_theta_i: Any, eta: Any, k: Any):
         half * (r_s2 + r_p2), half * (r_s2 - r_p2), (s2 * s2 - c2 * modulus) * over,
         mixed * b * over,
     )  # fmt: skip
+
+
+@wp.func
+def frame_across(direction: Any, up: Any):
+    """The unit vector across the ray that is nearest to `up`; any, where that is along the ray."""
+    across = up - direction * wp.dot(direction, up)
+    length2 = wp.dot(across, across)
+    zero = type(length2)(0.0)
+    if length2 <= type(length2)(1e-6):
+        # x, or y where the ray is within 53° of x: either is then at least 36° away.
+        x = type(length2)(1.0)
+        y = zero
+        if wp.abs(direction[0]) > type(length2)(0.6):
+            x = zero
+            y = type(length2)(1.0)
+        across = type(direction)(x, y, zero)
+        across -= direction * wp.dot(direction, across)
+        length2 = wp.dot(across, across)
+    across *= type(length2)(1.0) / wp.sqrt(length2)
+    # Twice, so that it is across to the last digit where `up` was nearly along the ray.
+    across -= direction * wp.dot(direction, across)
+    return wp.normalize(across)
 
 
 @wp.func

@@ -9,6 +9,7 @@ import warp as wp
 
 import scenes
 from sim.photons.aiming import Aim, Guide, View, plan_photons
+from sim.photons.emitted_light import compile_vibrations
 from sim.photons.lamp_structs import (
     AIM_CELLS,
     BEAM,
@@ -92,9 +93,13 @@ def compile_lamps(
     tables = _Tables()
     for (emitter, spectrum, flux), aims, count in zip(shining, guide.aims, counts, strict=True):
         tables.add(_emitter_row(compiled, emitter), spectrum, flux, aims, count)
+    data = tables.on_device(compiled)
+    data.vibrations = compile_vibrations(
+        [emitter for emitter, _, _ in shining], compiled.precision, compiled.device
+    )
     flux = sum(flux for _, _, flux in shining)
     spectra = tuple(spectrum for _, spectrum, _ in shining)
-    return Lamps(tables.on_device(compiled), tuple(tables.streams), flux, spectra, guide.aims)
+    return Lamps(data, tuple(tables.streams), flux, spectra, guide.aims)
 
 
 class _Tables:

@@ -17,6 +17,7 @@ from sim.features import Features
 from sim.photons.emission import make_emission, make_wavelength_function
 from sim.photons.energy import BOOK_COLUMNS
 from sim.photons.lamp_structs import make_lamp_structs
+from sim.photons.emitted_light import make_emitted_light
 from sim.photons.photon_structs import (
     add_event,
     has_events,
@@ -24,6 +25,7 @@ from sim.photons.photon_structs import (
     mark_dispersed,
     surface_key,
 )
+from sim.polarised_light import make_light
 from sim.sampling.roulette import choose_branches, play_roulette
 from sim.transport import (
     EVENT_ABSORB,
@@ -58,7 +60,12 @@ def make_follow(precision: str, features: Features) -> object:
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
     intersect = transport.intersect
     both_branches = features.method.branching == "weights"
-    losses = features.absorption or features.finishes
+    losses = features.absorption or features.finishes or features.polarisers
+    mode = features.light_of("photons")
+    polarised = mode != "averaged"
+    carried = make_light(precision, mode, polarisers=features.polarisers)
+    light_type, frame_type, turn = carried.Light, carried.Frame, carried.turn
+    judge, send = carried.judge, carried.send
 
     @wp.func
     def store(
@@ -78,8 +85,8 @@ def make_follow(precision: str, features: Features) -> object:
     @wp.func
     def follow(
         scene: scene_type, job: job_type, start_ray: ray_type, first: hit_type,
-        wavelength_nm: real, start_flux: real, draws: wp.uint64, out_photons: photons_type,
-        out_counts: wp.array2d(dtype=int),
+        wavelength_nm: real, start_flux: real, start_light: light_type, start_frame: frame_type,
+        draws: wp.uint64, out_photons: photons_type, out_counts: wp.array2d(dtype=int),
     ):
         """Follow a photon of one wavelength, about to meet `first`, and all its branches.
 
@@ -98,6 +105,11 @@ def make_follow(precision: str, features: Features) -> object:
         stack_ray = wp.zeros(shape=(8,), dtype=ray_type)
         stack_flux = wp.zeros(shape=(8,), dtype=real)
         stack_history = wp.zeros(shape=(8,), dtype=int)
+        if wp.static(polarised):
+            light = start_light
+            frame = start_frame
+            stack_light = wp.zeros(shape=(8,), dtype=light_type)
+            stack_frame = wp.zeros(shape=(8,), dtype=frame_type)
         depth = int(0)
         alive = bool(True)
         hit = first
@@ -105,6 +117,12 @@ def make_follow(precision: str, features: Features) -> object:
         while step < job.max_interactions:
             met = scatter(scene, ray, hit, indices)
             history = mark_dispersed(history, met.dispersive)
+            if wp.static(polarised):
+                if met.event == EVENT_BOUNDARY:
+                    light, frame = turn(scene, met, ray.direction, light, frame)
+                    reflectance, lost_here = judge(met, light)
+                    met.reflectance = reflectance
+                    met.absorbed = lost_here
             if wp.static(losses):
                 lost = flux * met.absorbed
                 absorbed += lost
@@ -133,6 +151,12 @@ def make_follow(precision: str, features: Features) -> object:
                 if swapped:
                     ray.direction = weaker
                     history = side_history
+                    refracts = 1 - refracts
+                if wp.static(polarised):
+                    if side_flux > real(0.0):
+                        stack_light[depth] = send(met, light, 1 - refracts)
+                        stack_frame[depth] = frame
+                    light = send(met, light, refracts)
                 if side_flux > real(0.0):
                     side_ray = ray_type()
                     side_ray.origin = met.point
@@ -188,6 +212,9 @@ def make_follow(precision: str, features: Features) -> object:
                 ray.face = pending.face
                 ray.prim2 = pending.prim2
                 ray.face2 = pending.face2
+                if wp.static(polarised):
+                    light = stack_light[depth]
+                    frame = stack_frame[depth]
                 flux = stack_flux[depth]
                 history = stack_history[depth]
                 alive = True
@@ -216,6 +243,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     emit = make_emission(precision, features.method.sampler)
     sample_wavelength = make_wavelength_function(precision)
     follow = make_follow(precision, features)
+    emitted_light = make_emitted_light(precision, features)
 
     @wp.func
     def trace_photon(
@@ -236,6 +264,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                     if scene.bodies[first.prim].dispersive == 1:
                         colours = int(COLOURS)
             flux = emitted / real(colours)
+            light, frame = emitted_light(lamps, job.emitter, ray.direction)
             colour = int(0)
             while colour < colours:
                 u = u_wavelength + real(colour) / real(colours)
@@ -244,7 +273,8 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                 )
                 draws = (wp.uint64(index) << wp.uint64(24)) + (wp.uint64(colour) << wp.uint64(17))
                 flows += follow(
-                    scene, job, ray, first, wavelength_nm, flux, draws, out_photons, out_counts
+                    scene, job, ray, first, wavelength_nm, flux, light, frame, draws, out_photons,
+                    out_counts,
                 )
                 colour += 1
         return emitted, flows
