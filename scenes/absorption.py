@@ -1,15 +1,18 @@
 """Absorption inside a medium, described in the scene in any of the ways that data come in."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Final, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from scenes.columns import refuse_uneven_columns
+from scenes.errors import Problem, refusal
 from scenes.fields import WAVELENGTH_RANGE_NM, InverseLength, Number, Size, Wavelength
 from scenes.model import SceneModel, plain_or_table
 from spectra import Absorption
 
 __all__ = [
+    "PUBLISHED",
+    "AbsorptionChoice",
     "AbsorptionSpec",
     "CoefficientTable",
     "DecadicAbsorption",
@@ -19,6 +22,7 @@ __all__ = [
     "InternalTransmittance",
     "NapierianAbsorption",
     "TransmittanceTable",
+    "describe_absorption",
 ]
 
 _SOURCE = "described in the scene"
@@ -116,6 +120,17 @@ class NapierianAbsorption(DescribedAbsorption):
         return Absorption((self.coefficient,), source=_SOURCE)
 
 
+def describe_absorption(absorption: Absorption) -> NapierianAbsorption:
+    """The absorption as a scene describes it, to the last digit."""
+    if absorption.wavelength_nm:
+        return NapierianAbsorption(
+            coefficient=CoefficientTable(
+                wavelength_nm=absorption.wavelength_nm, values=absorption.napierian_per_m
+            )
+        )
+    return NapierianAbsorption(coefficient=absorption.napierian_per_m[0])
+
+
 class DecadicAbsorption(DescribedAbsorption):
     """A way d leaves 10^(-coefficient · d) of the light."""
 
@@ -189,3 +204,21 @@ AbsorptionSpec = Annotated[
     Field(discriminator="type"),
 ]
 """A table with a `type` that describes an absorption."""
+
+PUBLISHED: Final = "published"
+"""The word for the absorption that is published of a glass by name."""
+
+
+def _known_word(word: str) -> str:
+    if word != PUBLISHED:
+        allowed = f"{PUBLISHED!r}, or a table that describes the absorption"
+        raise refusal(Problem("", f"must be {allowed}, is {word!r}", word, allowed))
+    return word
+
+
+AbsorptionChoice = Annotated[
+    Annotated[str, AfterValidator(_known_word), Tag("<plain>")]
+    | Annotated[AbsorptionSpec, Tag("<table>")],
+    Discriminator(plain_or_table),
+]
+"""`PUBLISHED`, or a description."""

@@ -1,19 +1,20 @@
 """Materials: what a surface does to the light that meets it."""
 
+from dataclasses import replace
 from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, Strict, model_validator
 
-from scenes.absorption import AbsorptionSpec
+from scenes.absorption import PUBLISHED, AbsorptionChoice
 from scenes.errors import Problem, refusal
 from scenes.media import DescribedMedium, MediumSpec, coloured, resolve_medium
 from scenes.metals import MetalSpec, resolve_metal
 from scenes.model import SceneModel
 from scenes.polariser import Polariser
-from scenes.reflectance import Reflectance, ReflectanceTable, reflectance_at
-from spectra import Conductor, Medium
+from scenes.reflectance import Reflectance, depends_on_wavelength, reflectance_at
+from spectra import Conductor, Medium, absorbing_media, published_absorption
 
 __all__ = ["Absorber", "Dielectric", "Lambertian", "Material", "Metal", "Mirror", "is_specular"]
 
@@ -26,8 +27,10 @@ class Dielectric(SceneModel):
         description='name of a glass, "air" or "vacuum" (a bubble), or a table that describes a'
         " medium"
     )
-    absorption: AbsorptionSpec | None = Field(
-        default=None, description="what the medium takes of the light on its way; nothing if absent"
+    absorption: AbsorptionChoice | None = Field(
+        default=None,
+        description='what the medium takes of the light on its way: "published" takes what is known'
+        " of a glass by name, a table describes it; nothing if absent",
     )
     priority: Annotated[int, Strict(), Field(ge=-1000, le=1000)] = Field(
         default=0,
@@ -44,9 +47,21 @@ class Dielectric(SceneModel):
             raise refusal(Problem("absorption", message, self.absorption, allowed))
         return self
 
+    @model_validator(mode="after")
+    def _is_published(self) -> Self:
+        if self.absorption == PUBLISHED and self.medium not in absorbing_media():
+            allowed = f"{PUBLISHED!r} for {', '.join(absorbing_media())}; else a table"
+            named = self.medium if isinstance(self.medium, str) else "a medium of the scene's own"
+            message = f"nothing is published of {named}; allowed: {allowed}"
+            raise refusal(Problem("absorption", message, self.absorption, allowed))
+        return self
+
     def resolved(self) -> Medium:
         """The medium inside, with its absorption."""
-        return coloured(resolve_medium(self.medium), self.absorption)
+        medium = resolve_medium(self.medium)
+        if isinstance(self.absorption, str):
+            return replace(medium, absorption=published_absorption(medium.name))
+        return coloured(medium, self.absorption)
 
 
 class Lambertian(SceneModel):
@@ -60,6 +75,11 @@ class Lambertian(SceneModel):
     def reflectance_at(self, wavelength_nm: ArrayLike) -> NDArray[np.float64]:
         """Reflectance at wavelengths [nm], of the same shape, 0 to 1."""
         return reflectance_at(self.reflectance, wavelength_nm)
+
+    @property
+    def is_coloured(self) -> bool:
+        """Whether what it reflects depends on the wavelength."""
+        return depends_on_wavelength(self.reflectance)
 
 
 class Mirror(SceneModel):
@@ -78,8 +98,7 @@ class Mirror(SceneModel):
     @property
     def is_coloured(self) -> bool:
         """Whether what it reflects depends on the wavelength."""
-        table = self.reflectance
-        return isinstance(table, ReflectanceTable) and len(set(table.values)) > 1
+        return depends_on_wavelength(self.reflectance)
 
 
 class Metal(SceneModel):

@@ -10,7 +10,7 @@ from scenes.columns import refuse_uneven_columns
 from scenes.fields import Number, Wavelength
 from scenes.model import SceneModel, plain_or_table
 
-__all__ = ["Fraction", "Reflectance", "ReflectanceTable", "reflectance_at"]
+__all__ = ["Fraction", "Reflectance", "ReflectanceTable", "depends_on_wavelength", "reflectance_at"]
 
 Fraction = Annotated[Number, Field(ge=0, le=1)]
 """A share, 0 to 1."""
@@ -47,3 +47,8 @@ def reflectance_at(
     if isinstance(reflectance, ReflectanceTable):
         return np.interp(wavelength, reflectance.wavelength_nm, reflectance.values)
     return np.full_like(wavelength, reflectance)
+
+
+def depends_on_wavelength(reflectance: float | ReflectanceTable) -> bool:
+    """Whether a reflectance is another one at another wavelength."""
+    return isinstance(reflectance, ReflectanceTable) and len(set(reflectance.values)) > 1

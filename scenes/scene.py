@@ -1,11 +1,12 @@
 """The scene: everything a scene file holds."""
 
 from collections.abc import Mapping
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     Field,
     PrivateAttr,
+    Strict,
     ValidationInfo,
     field_validator,
     model_validator,
@@ -36,6 +37,11 @@ class RenderDefaults(SceneModel):
     )
     max_interactions: Count | None = Field(
         default=None, description="surfaces a path may meet before it is given up"
+    )
+    bounces: Annotated[int, Strict(), Field(ge=0, le=1000)] | None = Field(
+        default=None,
+        description="diffuse surfaces that light may be reflected by on its way to the one that is"
+        " seen, 0 to 1000",
     )
 
 

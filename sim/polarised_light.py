@@ -96,9 +96,10 @@ def make_light(
 
     Returns:
         A namespace with the types `Light` and `Frame`, and the device functions
-        `start(stokes, up, direction)`, `turn(scene, met, direction, light, frame)`, both returning
-        light and frame, `judge(met, light)`, the reflectance and the absorbed part as this light
-        finds them, and `send(met, light, refracts)`, the light behind.
+        `start(stokes, up, direction)`, `natural(direction)` and
+        `turn(scene, met, direction, light, frame)`, all returning light and frame,
+        `judge(met, light)`, the reflectance and the absorbed part as this light finds them, and
+        `send(met, light, refracts)`, the light behind.
     """
     structs = make_scene_structs(precision)
     real, interaction_type = structs.real, structs.Interaction
@@ -124,7 +125,15 @@ def make_light(
         functions = _make_stokes(precision, polarisers, towards_eye)
     else:
         functions = _make_shares(precision)
-    return SimpleNamespace(Light=light_type, Frame=frame_type, judge=judge, **vars(functions))
+    start, vec3 = functions.start, structs.vec3
+
+    @wp.func
+    def natural(direction: vec3):
+        return start(vec3(), vec3(real(0.0), real(1.0), real(0.0)), direction)
+
+    return SimpleNamespace(
+        Light=light_type, Frame=frame_type, natural=natural, judge=judge, **vars(functions)
+    )
 
 
 def _make_stokes(precision: str, polarisers: bool, towards_eye: bool) -> SimpleNamespace:

@@ -36,18 +36,30 @@ from sim.launch import load_kernels
 from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
-from sim.photons.photon_map import PhotonMap, build_photon_map, make_collect, make_reorder
+from sim.photons.photon_batch import PhotonBatch
+from sim.photons.photon_map import (
+    INDIRECT_KEPT,
+    INDIRECT_WIDTH,
+    PhotonMap,
+    build_photon_map,
+    make_collect,
+    make_reorder,
+)
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
+from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
 
 __all__ = ["compile_lamps_for", "gather_radius", "kernels_of", "radius_shrinkage", "render"]
+
+_THINNING_KEY = 0x7411
+"""Apart from every stream's number."""
 
 FOOTPRINTS_A_RADIUS = 2.0
 """The first pass gathers over a disc this many pixel widths in radius."""
@@ -98,10 +110,10 @@ def render(
     books = []
     rule = StopRule(plan, watch)
     with closing(studio.photon_maps()) as photon_maps:
-        for pass_index, (photon_map, pass_books) in enumerate(photon_maps):
+        for pass_index, (maps, pass_books) in enumerate(photon_maps):
             books.append(pass_books)
             with watch.timing("gather"):
-                studio.expose(film, photon_map, pass_index)
+                studio.expose(film, maps, pass_index)
             if film.passes % film.turns == 0 and rule.ends_after(film):
                 break
     return Picture(
@@ -138,7 +150,7 @@ def compile_lamps_for(
         return compile_lamps(compiled, edges_nm, plan.photons, view=survey)
     return compile_guided_lamps(
         compiled, edges_nm, plan.photons, view=survey, seed=plan.seed,
-        max_interactions=plan.max_interactions, threads=plan.threads,
+        max_interactions=plan.max_interactions, bounces=plan.bounces, threads=plan.threads,
     )
 
 
@@ -162,6 +174,14 @@ def gather_radius(survey: Survey) -> float:
 
 
 @dataclass(frozen=True)
+class _Maps:
+    """One pass's photons: those that no diffuse surface has reflected, and those that one has."""
+
+    straight: PhotonMap
+    bounced: PhotonMap | None
+
+
+@dataclass(frozen=True)
 class _Studio:
     """All that the passes of one run share."""
 
@@ -173,7 +193,7 @@ class _Studio:
     radius: float
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[tuple[PhotonMap, EnergyBooks], None, None]:
+    def photon_maps(self) -> Generator[tuple[_Maps, EnergyBooks], None, None]:
         """The photon map of each pass, in order, and its energy books.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
@@ -193,8 +213,8 @@ class _Studio:
 
     def _photon_map(
         self, pass_index: int, stop: threading.Event
-    ) -> tuple[PhotonMap, EnergyBooks]:
-        """Emit and trace the photons of one pass, and map them."""
+    ) -> tuple[_Maps, EnergyBooks]:
+        """Emit and trace the photons of one pass, and map them, one map for those that bounced."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
                 self.compiled,
@@ -204,29 +224,38 @@ class _Studio:
                 max_interactions=self.plan.max_interactions,
                 threads=self.plan.threads,
                 store_direct=self.plan.direct_light == "photons",
+                bounces=self.plan.bounces,
                 stop=stop,
                 on_done=self.watch.count_photons,
             )
+        radius = self.radius * radius_shrinkage(pass_index, self.plan.alpha)
         with self.watch.timing("build photon map"):
-            photon_map = build_photon_map(
-                self.compiled,
-                batch,
-                self.receivers,
-                self.radius * radius_shrinkage(pass_index, self.plan.alpha),
-                threads=self.plan.threads,
-                stop=stop,
+            if not self.compiled.features.interreflection:
+                return _Maps(self._sorted(batch, radius, stop), None), batch.books
+            first = fold_key(self.plan.seed, pass_index, _THINNING_KEY) % INDIRECT_KEPT
+            straight, bounced = batch.parted(every=INDIRECT_KEPT, first=first)
+            maps = _Maps(
+                self._sorted(straight, radius, stop),
+                self._sorted(bounced, INDIRECT_WIDTH * radius, stop),
             )
-        return photon_map, batch.books
+        return maps, batch.books
 
-    def expose(self, film: Film, photon_map: PhotonMap, pass_index: int) -> None:
+    def _sorted(self, batch: PhotonBatch, radius: float, stop: threading.Event) -> PhotonMap:
+        """The map of a batch."""
+        return build_photon_map(
+            self.compiled, batch, self.receivers, radius, threads=self.plan.threads, stop=stop
+        )
+
+    def expose(self, film: Film, maps: _Maps, pass_index: int) -> None:
         """Expose the film to one pass."""
         self.watch.pass_index = pass_index
         lights = compose_lights(
             self.plan.precision,
-            photon_map,
+            maps.straight,
             self.receivers,
             self.lamps,
             direct=self.plan.direct_light == "lamps",
+            bounced=maps.bounced,
         )
         expose(
             film,

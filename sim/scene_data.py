@@ -238,7 +238,7 @@ def _bodies(
         priority, varies = 0, False
         if isinstance(material, scenes.Dielectric):
             kind, priority = DIELECTRIC, material.priority
-            varies = media.varies[medium] or media.varies[0]
+            varies = medium != 0 and (media.varies[medium] or media.varies[0])
         elif isinstance(material, scenes.Mirror | scenes.Metal):
             kind = MIRROR if isinstance(material, scenes.Mirror) else METAL
             varies = material.is_coloured

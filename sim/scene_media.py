@@ -6,7 +6,11 @@ import scenes
 from scenes.media import REFERENCE_MEDIA
 from spectra import Medium
 
-__all__ = ["SceneMedia", "collect_media"]
+__all__ = ["Finish", "SceneMedia", "collect_media"]
+
+
+Finish = scenes.Mirror | scenes.Metal | scenes.Lambertian
+"""What the surface of an opaque object can be, if it reflects."""
 
 
 @dataclass(frozen=True)
@@ -17,14 +21,14 @@ class SceneMedia:
         media: the media, the ambient one first.
         medium_of: of each object, the row of its medium; 0 if it has none.
         air_powers: of each medium, the power of the index of air that its index is multiplied by.
-        finishes: the mirrors and metals.
+        finishes: the mirrors, the metals and the diffuse surfaces.
         finish_of: of each object, the row of its finish; 0 if it has none.
     """
 
     media: tuple[Medium, ...]
     medium_of: tuple[int, ...]
     air_powers: tuple[int, ...]
-    finishes: tuple[scenes.Mirror | scenes.Metal, ...]
+    finishes: tuple[Finish, ...]
     finish_of: tuple[int, ...]
 
     @property
@@ -50,7 +54,7 @@ def collect_media(scene: scenes.Scene) -> SceneMedia:
     """What `scene` is made of, each medium and finish once."""
     ambient = _ambient_medium(scene)
     media, medium_of = [ambient], []
-    finishes: list[scenes.Mirror | scenes.Metal] = []
+    finishes: list[Finish] = []
     finish_of = []
     for item in scene.objects:
         row, finish = 0, 0
@@ -59,7 +63,7 @@ def collect_media(scene: scenes.Scene) -> SceneMedia:
             if medium not in media:
                 media.append(medium)
             row = media.index(medium)
-        elif isinstance(item.material, scenes.Mirror | scenes.Metal):
+        elif isinstance(item.material, Finish):
             if item.material not in finishes:
                 finishes.append(item.material)
             finish = finishes.index(item.material)

@@ -11,7 +11,7 @@ import scenes
 from sim.device_arrays import struct_array
 from sim.optics.dispersion import DISPERSION_COEFFICIENTS
 from sim.precision import precision_types
-from sim.scene_media import SceneMedia
+from sim.scene_media import Finish, SceneMedia
 from sim.scene_structs import CAUCHY, SELLMEIER, TABULATED, make_scene_structs
 from spectra import Cauchy, Sellmeier, Tabulated
 
@@ -69,9 +69,7 @@ def fill_optics(
     data.cubics = wp.array(cubics.astype(types.dtype), dtype=types.real, device=device)
 
 
-def _finish_row(
-    tables: "_Tables", material: scenes.Mirror | scenes.Metal, *, disperses: bool
-) -> tuple[Any, ...]:
+def _finish_row(tables: "_Tables", material: Finish, *, disperses: bool) -> tuple[Any, ...]:
     """Row of a Finish."""
     if isinstance(material, scenes.Metal):
         metal = material.resolved()

@@ -219,13 +219,13 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
 
     @wp.struct
     class Finish:
-        """A mirror's reflectance, or a metal's n and k, as rows of knots; 1 if it `varies`."""
+        """Reflectance of a mirror or a diffuse surface, or a metal's n and k, as rows of knots."""
 
         first: int
         count: int
         k_first: int
         k_count: int
-        varies: int
+        varies: int  # 1 if it depends on the wavelength
 
     @wp.struct
     class Scene:

@@ -49,7 +49,7 @@ its noise; twice the passes take 2.3 times the time for 0.74 of it, and 4 times 
 pass, which no longer limit it, 2.6 times the time for 0.97.
 """
 
-DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256}
+DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256, "bounces": 0}
 
 OPEN_PASSES: Final = 4096
 """Passes at most where the error or the time is to decide, and no number is given."""
@@ -60,6 +60,7 @@ _WHOLE_NUMBERS: Final = {
     "photons": (1, 2**28),
     "passes": (1, 2**20),
     "max_interactions": (1, 2**16),
+    "bounces": (0, 1000),
     "seed": (0, 2**63 - 1),
     "threads": (1, 1024),
 }
@@ -96,6 +97,8 @@ class RenderSettings:
             natural light at every surface; "s-p" by the shares of s and p, right where planes of
             incidence do not differ along a path; "stokes" by Stokes vectors, always right.
         max_interactions: Surfaces that one path may meet before it is culled.
+        bounces: Diffuse surfaces that light may be reflected by on its way to the one that is
+            seen; 0 shows what lamps, glass and mirrors send there.
         seed: Key of every random sequence; equal seeds give equal pictures.
         threads: CPU threads; None: all cores. It does not change the picture.
         device: "cpu", or "cuda:0" and so on.
@@ -119,6 +122,7 @@ class RenderSettings:
     direct_light: DirectLight = "lamps"
     polarisation: Polarisation = "auto"
     max_interactions: int | None = None
+    bounces: int | None = None
     seed: int = 0
     threads: int | None = None
     device: str = "cpu"
@@ -170,7 +174,7 @@ class RenderSettings:
             The same settings with nothing left open but, perhaps, the radius.
         """
         values = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
-        for field in ("photons", "passes", "radius", "max_interactions"):
+        for field in ("photons", "passes", "radius", "max_interactions", "bounces"):
             if values[field] is None:
                 values[field] = getattr(scene.render, field)
             if values[field] is None:
@@ -207,6 +211,7 @@ class ResolvedSettings(RenderSettings):
     photons: int
     passes: int
     max_interactions: int
+    bounces: int
     threads: int
     precision: Precision
 

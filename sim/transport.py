@@ -278,9 +278,9 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                         met.dispersive = (
                             scene.media[met.medium].varies | scene.media[beyond].varies
                         )
-                        if met.medium == beyond:
-                            met.event = EVENT_PASS
-                            met.dispersive = 0
+                    if met.medium == beyond:
+                        met.event = EVENT_PASS
+                        met.dispersive = 0
                     eta = indices[met.medium] / indices[beyond]
                     if wp.static(not polarised):
                         total, reflectance, reflected, refracted = cross_boundary(

@@ -8,11 +8,13 @@ Conventions: wavelengths are nanometres (``wavelength_nm``) in air or in vacuum 
 """
 
 from spectra.absorption import Absorption
+from spectra.absorption_tables import absorbing_media, published_absorption
 from spectra.conductors import Conductor, conductor, conductors
 from spectra.dispersion import Cauchy, Dispersion, Sellmeier, Tabulated, air_index
 from spectra.emission import EmissionSpectrum
 from spectra.errors import (
     SpectraError,
+    UnknownAbsorption,
     UnknownConductor,
     UnknownGlass,
     UnknownName,
@@ -52,12 +54,14 @@ __all__ = [
     "Sellmeier",
     "SpectraError",
     "Tabulated",
+    "UnknownAbsorption",
     "UnknownConductor",
     "UnknownGlass",
     "UnknownName",
     "UnknownObserver",
     "UnknownSpectrum",
     "WavelengthOutOfRange",
+    "absorbing_media",
     "air_index",
     "blackbody",
     "cie_illuminant",
@@ -71,6 +75,7 @@ __all__ = [
     "luminance",
     "map_to_gamut",
     "observer",
+    "published_absorption",
     "spectrum",
     "spectrum_names",
     "table",

@@ -35,8 +35,8 @@ MAX_ALPHA_PER_M: Final = 1e30
 """Larger coefficients are cut to this: opaque at any thickness, and finite in single precision."""
 
 _EXTINCTION_STEP: Final = 1.0 / 250.0
-"""Largest relative step between the knots made from a table of k. α falls as 1/λ where k is
-constant, and the straight line over a step h errs by (h/λ)²/4 of it at most: 4e-6."""
+"""Largest relative step between the knots made from a table of k. Where k = a + bλ, the part a/λ of
+α bends, and the straight line over a step h errs by (h/λ)²/4 of that part at most: 4e-6."""
 
 
 @dataclass(frozen=True)

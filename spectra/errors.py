@@ -2,6 +2,7 @@
 
 SpectraError(ValueError)          a quantity that is not a spectrum, an index, a colour
 ├── UnknownName(KeyError)         a name that is not in the tables; lists the nearest ones
+│   ├── UnknownAbsorption
 │   ├── UnknownConductor
 │   ├── UnknownGlass
 │   ├── UnknownObserver
@@ -18,6 +19,7 @@ from spectra.units import M_PER_NM, NM_PER_UM
 
 __all__ = [
     "SpectraError",
+    "UnknownAbsorption",
     "UnknownConductor",
     "UnknownGlass",
     "UnknownName",
@@ -72,6 +74,16 @@ class UnknownName(SpectraError, KeyError):
 
     def _all_known(self) -> str:
         return f"known: {', '.join(self.known)}"
+
+
+class UnknownAbsorption(UnknownName):
+    """A medium of whose absorption there is no table."""
+
+    kind = "absorption of"
+
+    def __str__(self) -> str:
+        """One plain sentence; a similar name would be another medium."""
+        return f"no absorption of {self.name!r} is published here; {self._all_known()}"
 
 
 class UnknownConductor(UnknownName):

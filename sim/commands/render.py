@@ -56,6 +56,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--alpha", type=float, default=2 / 3, metavar="A",
                         help="how slowly the radius shrinks from pass to pass; 1: not at all "
                              "(default: 2/3)")
+    parser.add_argument("--bounces", type=int, metavar="N",
+                        help="diffuse surfaces that light may be reflected by on its way to the "
+                             "one that is seen (default: the scene's, else 0)")
     parser.add_argument("--precision", choices=("float32", "float64"),
                         help="arithmetic of tracing (default: float64 on cpu, else float32)")
     parser.add_argument("--seed", type=count, default=0, metavar="N",

@@ -30,6 +30,7 @@ class Features:
         polarisation: light carries how much more of it is s than p, from surface to surface.
         stokes: photons carry Stokes vectors, as their planes of incidence differ.
         camera_stokes: camera paths do.
+        interreflection: diffuse surfaces light one another.
         reflected_branches: boundaries can reflect.
         dispersion: boundaries can part light by its wavelength.
         undispersed_photons: photons that no dispersion has touched can be in the map.
@@ -55,6 +56,7 @@ class Features:
     polarisation: bool = True
     stokes: bool = True
     camera_stokes: bool = True
+    interreflection: bool = True
     reflected_branches: bool = True
     dispersion: bool = True
     undispersed_photons: bool = True

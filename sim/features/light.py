@@ -1,6 +1,8 @@
 """Features: what happens to light at boundaries, and how receivers learn of it."""
 
-from scenes import Dielectric, Metal, Mirror, Polariser
+import numpy as np
+
+from scenes import Dielectric, Disk, Lambertian, Metal, Mirror, Plane, Polariser, Rectangle
 from sim.features.boundary_error import path_error, relative_variations
 from sim.features.registry import (
     Cost,
@@ -14,6 +16,8 @@ from sim.features.registry import (
 )
 
 __all__: list[str] = []
+
+_SAMPLES = 257
 
 
 def _judge_boundaries(subject: Subject) -> Verdict:
@@ -56,17 +60,28 @@ register(Feature(
 ))  # fmt: skip
 
 
+def _what_colours(subject: Subject) -> str:
+    """What parts light by its wavelength, apart from refraction; "" if nothing does."""
+    coloured = sum(one.is_coloured for one in subject.finishes)
+    if coloured:
+        return f"{coloured} mirrors or metals reflect some wavelengths more than others"
+    if subject.bounces != 0 and any(
+        isinstance(one.material, Lambertian) and one.material.is_coloured
+        for one in subject.scene.objects
+    ):
+        return "diffuse surfaces reflect some wavelengths more than others"
+    tinted = [medium.name for medium in subject.media if is_tinted(medium)]
+    return "absorption depends on the wavelength: " + ", ".join(tinted) if tinted else ""
+
+
 def _judge_dispersion(subject: Subject) -> Verdict | None:
     """Left out where no index varies; where it hardly does, as far as the bound allows.
 
     The bound is that of treating every wavelength as any other one of the film's.
     """
-    coloured = sum(one.is_coloured for one in subject.finishes)
-    if coloured:
-        return needed(f"{coloured} mirrors or metals reflect some wavelengths more than others")
-    tinted = [medium.name for medium in subject.media if is_tinted(medium)]
-    if tinted:
-        return needed("absorption depends on the wavelength: " + ", ".join(tinted))
+    colours = _what_colours(subject)
+    if colours:
+        return needed(colours)
     if not subject.has_boundaries:
         return null("there is no boundary")
     if not any(subject.varying_media):
@@ -93,6 +108,8 @@ def _judge_undispersed(subject: Subject) -> Verdict:
     """The map is empty of them where it leaves direct light out and all glass disperses."""
     if subject.direct_light != "lamps":
         return needed("the map holds direct light, or may do so")
+    if subject.bounces != 0:
+        return needed("light may come from diffuse surfaces, its colours together")
     varies = dict(zip(subject.media, subject.varying_media, strict=True))
     ambient = subject.varying_media[0]
     for item in subject.scene.objects:
@@ -113,6 +130,34 @@ register(Feature(
     flag="undispersed_photons",
     cost=Cost(1.01, "prism"),
     kernel="camera",
+    separable=True,
+))  # fmt: skip
+
+
+def _judge_interreflection(subject: Subject) -> Verdict:
+    """Each bounce keeps at most the largest reflectance ρ: left out are ρ + ρ² + … of the light."""
+    edges_nm = subject.scene.film.edges_nm
+    wavelength_nm = np.linspace(edges_nm[0], edges_nm[-1], _SAMPLES)
+    materials = [one.material for one in subject.scene.objects]
+    diffuse = [one for one in materials if isinstance(one, Lambertian)]
+    largest = max(
+        (float(np.max(one.reflectance_at(wavelength_nm))) for one in diffuse), default=0.0
+    )
+    shapes = [one.shape for one in subject.scene.objects]
+    alone = len(shapes) == 1 and isinstance(shapes[0], Rectangle | Disk | Plane)
+    if largest == 0.0 or alone:
+        return null("no diffuse surface can light another, or itself")
+    if subject.bounces == 0:
+        return Verdict("bounces = 0: diffuse surfaces do not light one another", 1.0, chosen=True)
+    return needed(f"{len(diffuse)} diffuse surfaces, reflectance up to {largest:.2g}")
+
+
+register(Feature(
+    name="interreflection",
+    what="photons are reflected by diffuse surfaces, and light others",
+    judge=_judge_interreflection,
+    flag="interreflection",
+    cost=Cost(1.00, "ball"),
     separable=True,
 ))  # fmt: skip
 

@@ -98,7 +98,7 @@ def plan_features(scene: scenes.Scene, settings: ResolvedSettings) -> FeaturePla
     return judge_features(
         Subject(
             scene, made_of.media, made_of.air_powers, settings.direct_light, settings.precision,
-            settings.polarisation,
+            settings.bounces, settings.polarisation,
         ),
         tolerance=settings.omission_tolerance,
         everything=settings.features == "all",

@@ -51,7 +51,7 @@ def _judge_frames(subject: Subject, *, from_anywhere: bool) -> Verdict:
 
 
 def _judge_photons(subject: Subject) -> Verdict:
-    return _judge_frames(subject, from_anywhere=False)
+    return _judge_frames(subject, from_anywhere=subject.bounces != 0)
 
 
 def _judge_camera(subject: Subject) -> Verdict:

@@ -41,6 +41,7 @@ class Subject:
         air_powers: of each medium, the power of the index of air that its index is multiplied by.
         direct_light: the setting of this name; None: not known.
         precision: the setting of this name; None: not known.
+        bounces: the setting of this name; None: not known.
         polarisation: the setting of this name.
     """
 
@@ -49,6 +50,7 @@ class Subject:
     air_powers: tuple[int, ...]
     direct_light: str | None = None
     precision: str | None = None
+    bounces: int | None = None
     polarisation: str = "auto"
 
     @cached_property

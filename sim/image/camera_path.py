@@ -76,7 +76,7 @@ def make_film_struct() -> Any:
 def make_render_camera(precision: str, features: Features) -> Any:
     """Kernel `render_camera(start, scene, camera, lights, film)`."""
     transport = make_transport(precision, features)
-    real, vec3, interact = transport.real, transport.vec3, transport.interact
+    real, interact = transport.real, transport.interact
     media_indices, split = transport.media_indices, transport.split
     scene_type, ray_type = transport.Scene, transport.Ray
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
@@ -86,7 +86,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
     mode = features.light_of("camera")
     polarised = mode != "averaged"
     carried = make_light(precision, mode, polarisers=features.polarisers, towards_eye=True)
-    light_type, frame_type, start = carried.Light, carried.Frame, carried.start
+    light_type, frame_type, natural = carried.Light, carried.Frame, carried.natural
     turn, judge, send = carried.turn, carried.judge, carried.send
     gather = make_gather(precision, features)
 
@@ -105,8 +105,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
         stack_dispersed = wp.zeros(shape=(8,), dtype=int)
         if wp.static(polarised):
             # What the eye is sensitive to, of the light that comes against the path: all alike.
-            up = vec3(real(0.0), real(1.0), real(0.0))
-            light, frame = start(vec3(), up, camera_ray.direction)
+            light, frame = natural(camera_ray.direction)
             stack_light = wp.zeros(shape=(8,), dtype=light_type)
             stack_frame = wp.zeros(shape=(8,), dtype=frame_type)
         depth = int(0)

@@ -187,19 +187,50 @@ def make_gather(precision: str, features: Features) -> object:
         return bias
 
     @wp.func
+    def peak_density(scene: scene_type, photons: map_type, met: interaction_type):
+        """Kernel at its centre, normalised over what the disc has of the receiver [1/m²]."""
+        inside = kernel_integral(scene, met, photons.radius)
+        return real(2.0) / (real(PI) * photons.radius * photons.radius * inside)
+
+    @wp.func
+    def add_all(
+        scene: scene_type, photons: map_type, receivers: receivers_type, met: interaction_type,
+        scale: real, sums: wp.array2d(dtype=wp.float64), row: int,
+    ):
+        """Add a map's photons of all bands, `scale` times, and their bias."""
+        peak = scale * peak_density(scene, photons, met)
+        bias = add_groups(photons, receivers, met, peak, sums, row)
+        sums[row, receivers.bands + receivers.lamps] += wp.float64(bias)
+
+    @wp.func
+    def sum_band(
+        scene: scene_type, photons: map_type, receivers: receivers_type, met: interaction_type,
+        sight: sight_type,
+    ):
+        """A map's irradiance times the reflectance over π in the sight's band, and its bias."""
+        total, bias = sum_group(photons, receivers, met, sight.band, sight.band)
+        if wp.static(features.undispersed_photons):
+            if photons.undispersed == 1:
+                dealt = receivers.bands + (sight.band + sight.deal) % DEALS
+                undispersed, bias_dealt = sum_group(photons, receivers, met, dealt, sight.band)
+                total += undispersed * real(wp.static(float(DEALS)))
+                bias += bias_dealt * real(wp.static(float(DEALS)))
+        density = peak_density(scene, photons, met)
+        return total * density, bias * density
+
+    @wp.func
     def gather(
         scene: scene_type, lights: lights_type, met: interaction_type, sight: sight_type,
         scale: real, sums: wp.array2d(dtype=wp.float64),
     ):
-        photons = lights.photons
         receivers = lights.receivers
         bands = receivers.bands
         row = sight.row
-        inside = kernel_integral(scene, met, photons.radius)
-        density = real(2.0) / (real(PI) * photons.radius * photons.radius * inside)
         if sight.band == ALL_BANDS:
-            bias = add_groups(photons, receivers, met, scale * density, sums, row)
-            sums[row, bands + receivers.lamps] += wp.float64(bias)
+            add_all(scene, lights.photons, receivers, met, scale, sums, row)
+            if wp.static(features.interreflection):
+                if lights.interreflection == 1:
+                    add_all(scene, lights.bounced, receivers, met, scale, sums, row)
             lamp = int(0)
             while lamp < receivers.lamps:
                 total = sums[row, bands + lamp]
@@ -217,15 +248,13 @@ def make_gather(precision: str, features: Features) -> object:
                         band += 1
                 lamp += 1
         elif wp.static(features.dispersion):
-            total_band, bias_band = sum_group(photons, receivers, met, sight.band, sight.band)
-            if wp.static(features.undispersed_photons):
-                if photons.undispersed == 1:
-                    dealt = bands + (sight.band + sight.deal) % DEALS
-                    undispersed, bias_dealt = sum_group(photons, receivers, met, dealt, sight.band)
-                    total_band += undispersed * real(wp.static(float(DEALS)))
-                    bias_band += bias_dealt * real(wp.static(float(DEALS)))
-            total_band *= density
-            bias_band *= density * scale * receivers.luminance[sight.band]
+            total_band, bias_band = sum_band(scene, lights.photons, receivers, met, sight)
+            if wp.static(features.interreflection):
+                if lights.interreflection == 1:
+                    more, more_bias = sum_band(scene, lights.bounced, receivers, met, sight)
+                    total_band += more
+                    bias_band += more_bias
+            bias_band *= scale * receivers.luminance[sight.band]
             sums[row, bands + receivers.lamps] += wp.float64(bias_band)
             if wp.static(features.direct_light):
                 if lights.direct == 1:

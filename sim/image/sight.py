@@ -39,9 +39,11 @@ def make_sight_struct(precision: str) -> Any:
 
 @functools.cache
 def make_lights_struct(precision: str) -> Any:
-    """Struct Lights: the photon map, how receivers reflect, and the lamps.
+    """Struct Lights: the photon maps, how receivers reflect, and the lamps.
 
-    `direct` is 1 where the map leaves out what comes straight from the lamps.
+    `photons` are those that lamps, glass and mirrors have sent, `bounced` those that a diffuse
+    surface has; `interreflection` is 1 where there may be any. `direct` is 1 where the maps leave
+    out what comes straight from the lamps.
     """
     map_type = make_map_structs(precision).Map
     receivers_type = make_receiver_structs(precision).Receivers
@@ -50,15 +52,23 @@ def make_lights_struct(precision: str) -> Any:
     @wp.struct
     class Lights:
         photons: map_type
+        bounced: map_type
         receivers: receivers_type
         lamps: lamps_type
         direct: int
+        interreflection: int
 
     return Lights
 
 
 def compose_lights(
-    precision: str, photon_map: PhotonMap, receivers: Any, lamps: Lamps, *, direct: bool
+    precision: str,
+    photon_map: PhotonMap,
+    receivers: Any,
+    lamps: Lamps,
+    *,
+    direct: bool,
+    bounced: PhotonMap | None = None,
 ) -> Any:
     """The device-side Lights struct of one pass.
 
@@ -68,9 +78,12 @@ def compose_lights(
         receivers: the device-side Receivers struct.
         lamps: the scene's lamps.
         direct: whether to add what comes straight from the lamps: the map must not hold it.
+        bounced: the photons that a diffuse surface has reflected, if kernels know of them.
     """
     lights = make_lights_struct(precision)()
     lights.photons = photon_map.data
+    lights.bounced = photon_map.data if bounced is None else bounced.data
+    lights.interreflection = int(bounced is not None)
     lights.receivers = receivers
     lights.lamps = lamps.data
     lights.direct = int(direct)

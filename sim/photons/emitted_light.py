@@ -22,13 +22,14 @@ _UPRIGHT = scenes.Polarisation(degree=0.0)
 def make_emitted_light(precision: str, features: Features) -> object:
     """Device function `emitted_light(lamps, emitter, direction)`: light and its frame."""
     structs = make_lamp_structs(precision)
-    real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
+    vec3, lamps_type = structs.vec3, structs.Lamps
     mode = features.light_of("photons")
-    start = make_light(precision, mode, polarisers=features.polarisers).start
+    carried = make_light(precision, mode, polarisers=features.polarisers)
+    start, natural = carried.start, carried.natural
 
     @wp.func
     def natural_light(lamps: lamps_type, emitter: int, direction: vec3):
-        return start(vec3(), vec3(real(0.0), real(1.0), real(0.0)), direction)
+        return natural(direction)
 
     @wp.func
     def emitted_light(lamps: lamps_type, emitter: int, direction: vec3):

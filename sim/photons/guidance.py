@@ -25,6 +25,7 @@ import scenes
 from sim.photons.aiming import Aim, Guide, View, cells_to_distribution
 from sim.photons.lamp_structs import AIM_AREA, AIM_BASE, AIM_CELLS, AIM_CONE, BEAM
 from sim.photons.lamps import Lamps
+from sim.photons.photon_map import INDIRECT_WIDTH
 from sim.photons.pilot import Pilot, Shots
 from sim.scene_data import CompiledScene
 
@@ -203,7 +204,10 @@ def _second_moments(
     mean = float(np.sum(looked_at * light) / np.sum(looked_at))
     weight = seen * (light + DARKEST * mean) ** (-4.0 / 3.0)
     if not direct:
-        weight = weight * (deposits["refractions"] + deposits["reflections"] > 0)
+        bounced = deposits["bounces"] > 0
+        weight = weight * ((deposits["refractions"] + deposits["reflections"] > 0) | bounced)
+        # As many more photons share the wider disc of what has bounced.
+        weight = weight * np.where(bounced, INDIRECT_WIDTH**-2.0, 1.0)
     moments: FloatArray = np.bincount(
         pilot.photon, weight * deposits["flux"] ** 2, pilot.photons
     )

@@ -29,6 +29,7 @@ def compile_guided_lamps(
     view: View,
     seed: int,
     max_interactions: int,
+    bounces: int,
     threads: int,
 ) -> Lamps:
     """Lamps for a picture whose photons are those that have met glass.
@@ -42,17 +43,19 @@ def compile_guided_lamps(
         view: what the camera sees.
         seed: the run's seed.
         max_interactions: surfaces that one photon and all its branches may meet.
+        bounces: off diffuse surfaces, at most; without any, photons that miss glass are wasted.
         threads: CPU threads.
 
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.
     """
     if compiled.features.method.aiming == "unaimed":
-        return compile_lamps(compiled, edges_nm, photons, direct=False)
+        return compile_lamps(compiled, edges_nm, photons, direct=bounces > 0)
     scouts = int(np.clip(PILOT_PART * photons, FEWEST, MOST))
-    lamps = compile_lamps(compiled, edges_nm, scouts, view=view, direct=False)
+    lamps = compile_lamps(compiled, edges_nm, scouts, view=view, direct=bounces > 0)
     pilot = trace_pilot(
-        compiled, lamps, seed=seed, max_interactions=max_interactions, threads=threads
+        compiled, lamps, seed=seed, max_interactions=max_interactions, bounces=bounces,
+        threads=threads,
     )
     guide = learn_guide(compiled, lamps, pilot, view, direct=False)
     return compile_lamps(compiled, edges_nm, photons, guide=guide)

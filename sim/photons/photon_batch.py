@@ -1,6 +1,6 @@
 """The photons that one pass stored, and where its energy went."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ class PhotonBatch:
         books: where the pass's flux went.
         origin: (3,), world position of the local frame's origin [m].
         deposits: (ranges,) how many photons each range of the launch stored, in their order.
+        stands_for: how many photons each of them stands for.
     """
 
     data: Any
@@ -31,9 +32,23 @@ class PhotonBatch:
     books: EnergyBooks
     origin: npt.NDArray[np.float64]
     deposits: npt.NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, dtype=np.int32))
+    stands_for: int = 1
 
     def __len__(self) -> int:
         return len(self.slots)
+
+    def parted(self, *, every: int, first: int) -> tuple["PhotonBatch", "PhotonBatch"]:
+        """Those that no diffuse surface has reflected, and some of those that one has.
+
+        Args:
+            every: one of how many is kept of the second kind; it stands for the others.
+            first: the first that is kept, 0 to `every` − 1.
+        """
+        bounced = ((self.data.history.numpy()[self.slots] >> 20) & 1023) > 0
+        return (
+            replace(self, slots=self.slots[~bounced]),
+            replace(self, slots=self.slots[bounced][first::every], stands_for=every),
+        )
 
     def to_numpy(self) -> dict[str, npt.NDArray[Any]]:
         """The photons as host arrays, one row a photon.

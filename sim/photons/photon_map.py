@@ -26,7 +26,15 @@ from sim.photons.receivers import DEALS, make_receiver_structs
 from sim.precision import precision_types
 from sim.scene_data import CompiledScene
 
-__all__ = ["PhotonMap", "build_photon_map", "make_collect", "make_map_structs", "make_reorder"]
+__all__ = [
+    "INDIRECT_KEPT",
+    "INDIRECT_WIDTH",
+    "PhotonMap",
+    "build_photon_map",
+    "make_collect",
+    "make_map_structs",
+    "make_reorder",
+]
 
 _RANGE_SIZE = 65536
 
@@ -37,6 +45,14 @@ looks into; one for all bands costs the photons it passes over: this is between 
 DEAL_BITS = wp.constant(5)
 """Undispersed photons are dealt in packs of 2⁵. Every eighth point of a Sobol sequence lies in one
 eighth of the square; a pack lies all over it, and so do the packs of a deal."""
+
+INDIRECT_WIDTH = 4.0
+"""Gather radius of light that a diffuse surface has reflected, in gather radii of other light: it
+changes less from place to place, and over so much wider a disc has a sixteenth of the noise."""
+
+INDIRECT_KEPT = 4
+"""One photon of how many is kept of those that diffuse surfaces have reflected: they lie all
+over, and each camera path gathers from a wide disc, so that their number is its cost."""
 
 _MAX_CELLS_A_SIDE = 1024
 _MAX_CELLS = 1 << 23
@@ -81,6 +97,7 @@ def make_collect(precision: str) -> Any:
         photons: photons_type,
         slots: wp.array(dtype=int),
         receivers: receivers_type,
+        stands_for: real,
         out: map_type,
     ):
         i = start + wp.tid()
@@ -88,7 +105,7 @@ def make_collect(precision: str) -> Any:
         surface = photons.surface[slot]
         out.position[i] = photons.position[slot]
         out.surface[i] = surface
-        flux = real(photons.flux[slot])
+        flux = real(photons.flux[slot]) * stands_for
         if is_dispersed(photons.history[slot]) == 1:
             wavelength_nm = real(photons.wavelength_nm[slot])
             band = int(
@@ -170,7 +187,7 @@ def build_photon_map(
         return PhotonMap(loose, grid, 0)
     ranges = cut_ranges(count, _RANGE_SIZE)
     slots: Any = wp.array(batch.slots, dtype=int, device=device)
-    inputs = [batch.data, slots, receivers, loose]
+    inputs = [batch.data, slots, receivers, float(batch.stands_for), loose]
     launch_ranges(
         make_collect(precision), ranges, lambda _: inputs, device=device, threads=threads, stop=stop
     )

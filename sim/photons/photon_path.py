@@ -14,18 +14,23 @@ from typing import Any
 import warp as wp
 
 from sim.features import Features
+from sim.optics.dispersion import tabulated_index
 from sim.photons.emission import make_emission, make_wavelength_function
 from sim.photons.energy import BOOK_COLUMNS
 from sim.photons.lamp_structs import make_lamp_structs
 from sim.photons.emitted_light import make_emitted_light
 from sim.photons.photon_structs import (
+    add_bounce,
     add_event,
+    bounces_of,
     has_events,
     make_photon_structs,
     mark_dispersed,
     surface_key,
 )
 from sim.polarised_light import make_light
+from sim.sampling.counter import hash64, to_unit
+from sim.sampling.directions import sample_cosine_hemisphere, to_world
 from sim.sampling.roulette import choose_branches, play_roulette
 from sim.transport import (
     EVENT_ABSORB,
@@ -43,6 +48,10 @@ COLOURS = wp.constant(4)
 """Wavelengths, evenly spread over the lamp's distribution, of a photon that meets a dispersive
 surface first: light that leaves the glass nearly where it would without dispersion stays white
 from few photons."""
+
+
+BOUNCE_THRESHOLD = wp.constant(0.25)
+"""A photon reflected by a diffuse surface with less than this part of its flux plays roulette."""
 
 
 FLOWS = wp.types.vector(length=len(BOOK_COLUMNS) - 1, dtype=wp.float64)
@@ -65,7 +74,7 @@ def make_follow(precision: str, features: Features) -> object:
     polarised = mode != "averaged"
     carried = make_light(precision, mode, polarisers=features.polarisers)
     light_type, frame_type, turn = carried.Light, carried.Frame, carried.turn
-    judge, send = carried.judge, carried.send
+    natural, judge, send = carried.natural, carried.judge, carried.send
 
     @wp.func
     def store(
@@ -81,6 +90,20 @@ def make_follow(precision: str, features: Features) -> object:
         photons.surface[slot] = surface
         photons.history[slot] = history
         photons.emitter[slot] = emitter
+
+    @wp.func
+    def diffuse_reflectance(scene: scene_type, finish: transport.Finish, wavelength_nm: real):
+        return tabulated_index(
+            scene.knots_nm, scene.cubics, finish.first, finish.count, wavelength_nm
+        )
+
+    @wp.func
+    def bounce(normal: vec3, key: wp.uint64, like: real):
+        """A direction off a Lambertian surface: as the cosine."""
+        u0 = to_unit(hash64(key, wp.uint64(0)), like)
+        u1 = to_unit(hash64(key, wp.uint64(1)), like)
+        x, y, z = sample_cosine_hemisphere(u0, u1)
+        return to_world(x, y, z, normal)
 
     @wp.func
     def follow(
@@ -187,7 +210,6 @@ def make_follow(precision: str, features: Features) -> object:
             else:
                 alive = False
                 if met.event == EVENT_DEPOSIT:
-                    deposited += flux
                     if job.store_direct == 1 or has_events(history):
                         slot = wp.atomic_add(out_counts, job.range_row, 0, 1)
                         if slot < job.slot_count:
@@ -196,6 +218,31 @@ def make_follow(precision: str, features: Features) -> object:
                                 wavelength_nm, flux, surface_key(met.prim, met.face, met.side),
                                 history, job.emitter,
                             )
+                    goes_on = real(0.0)
+                    if wp.static(features.interreflection):
+                        if bounces_of(history) < job.bounces:
+                            finish = scene.finishes[scene.bodies[met.prim].finish]
+                            goes_on = flux * diffuse_reflectance(scene, finish, wavelength_nm)
+                            history = add_bounce(mark_dispersed(history, finish.varies))
+                            draw = draws + wp.uint64(step)
+                            ray.direction = bounce(
+                                met.normal, hash64(job.key + wp.uint64(3), draw), flux
+                            )
+                            ray.origin = met.point
+                            ray.prim = met.prim
+                            ray.face = met.face
+                            ray.prim2 = met.prim2
+                            ray.face2 = met.face2
+                            if wp.static(polarised):
+                                light, frame = natural(ray.direction)
+                    deposited += flux - goes_on
+                    if wp.static(features.interreflection):
+                        flux = play_roulette(
+                            goes_on, start_flux * real(BOUNCE_THRESHOLD), job.key + wp.uint64(4),
+                            draws + wp.uint64(step),
+                        )
+                        culled += goes_on - flux
+                        alive = flux > real(0.0)
                 elif met.event == EVENT_ABSORB:
                     absorbed += flux
                 else:

@@ -11,7 +11,9 @@ __all__ = [
     "HISTORY_LIMIT",
     "MAX_FACES",
     "MAX_OBJECTS",
+    "add_bounce",
     "add_event",
+    "bounces_of",
     "has_events",
     "is_dispersed",
     "make_photon_structs",
@@ -43,6 +45,20 @@ def add_event(history: int, refracts: int):
     if ((history >> shift) & 1023) == 1023:
         return history
     return history + (1 << shift)
+
+
+@wp.func
+def add_bounce(history: int):
+    """History with one more bounce off a diffuse surface."""
+    if ((history >> 20) & 1023) == 1023:
+        return history
+    return history + (1 << 20)
+
+
+@wp.func
+def bounces_of(history: int):
+    """How many bounces off diffuse surfaces there were."""
+    return (history >> 20) & 1023
 
 
 @wp.func
@@ -101,5 +117,6 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         max_interactions: int
         store_direct: int  # 0: what comes straight from the lamp is booked, but not stored
         branch_threshold: real
+        bounces: int  # off diffuse surfaces, at most
 
     return SimpleNamespace(Photons=Photons, Job=Job)

@@ -132,7 +132,13 @@ class Pilot:
 
 
 def trace_pilot(
-    compiled: CompiledScene, lamps: Lamps, *, seed: int, max_interactions: int, threads: int
+    compiled: CompiledScene,
+    lamps: Lamps,
+    *,
+    seed: int,
+    max_interactions: int,
+    bounces: int,
+    threads: int,
 ) -> Pilot:
     """Trace the photons of `lamps` as a pilot.
 
@@ -141,12 +147,13 @@ def trace_pilot(
         lamps: its emitters, with as many photons as the pilot shall have.
         seed: the run's seed.
         max_interactions: surfaces that one photon and all its branches may meet.
+        bounces: off diffuse surfaces, at most.
         threads: CPU threads; they do not change what is found.
     """
     lamps.seed(compiled.device, seed, PILOT_PASS)
     counts = [stream.photons for stream in lamps.streams]
     firsts = np.concatenate([[0], np.cumsum(counts)])
-    run = _PilotRun(compiled, lamps, seed, max_interactions, threads, firsts)
+    run = _PilotRun(compiled, lamps, seed, max_interactions, bounces, threads, firsts)
     photons, stored = run.trace()
     density, square = run.retrace()
     shots = []
@@ -170,6 +177,7 @@ class _PilotRun:
     lamps: Lamps
     seed: int
     max_interactions: int
+    bounces: int
     threads: int
     firsts: npt.NDArray[np.int64]
 
@@ -198,6 +206,7 @@ class _PilotRun:
             job.stop = start + count
             job.max_interactions = self.max_interactions
             job.store_direct = 1
+            job.bounces = self.bounces
             return list(inputs_of(row, job))
 
         launch_ranges(

@@ -60,6 +60,7 @@ def trace_photons(
     max_interactions: int,
     threads: int,
     store_direct: bool = True,
+    bounces: int = 0,
     stop: threading.Event | None = None,
     on_done: Callable[[int], None] | None = None,
     range_size: int = RANGE_SIZE,
@@ -75,6 +76,7 @@ def trace_photons(
         max_interactions: surfaces that one photon and all its branches may meet.
         threads: CPU threads.
         store_direct: also store what comes straight from a lamp; else it is only in the books.
+        bounces: off diffuse surfaces, at most, if the kernels know of them.
         stop: once set, from another thread, tracing ends; the batch is then incomplete.
         on_done: told of finished photons.
         range_size: photons a launch.
@@ -89,7 +91,7 @@ def trace_photons(
             shares.append(_Share(row, start, count, slot, room))
             slot += room
     run = _Run(
-        compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, stop,
+        compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, bounces, stop,
         branch_threshold,
     )
     photons, counts, books = run.trace(shares, slot, on_done)
@@ -121,6 +123,7 @@ class _Run:
     max_interactions: int
     threads: int
     store_direct: bool
+    bounces: int
     stop: threading.Event | None
     branch_threshold: float
 
@@ -168,6 +171,7 @@ class _Run:
         job.max_interactions = self.max_interactions
         job.store_direct = int(self.store_direct)
         job.branch_threshold = self.branch_threshold
+        job.bounces = self.bounces
         return job
 
 

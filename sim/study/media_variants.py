@@ -12,7 +12,8 @@ from typing import TypeAlias
 import numpy as np
 
 import scenes
-from scenes.media import DescribedMedium, resolve_medium
+from scenes.absorption import describe_absorption
+from scenes.media import DescribedMedium
 from spectra import Medium
 from spectra.units import NM_PER_UM
 
@@ -66,14 +67,12 @@ def _rewrite(scene: scenes.Scene, describe: _Describe) -> scenes.Scene:
     def redescribed(item: scenes.SceneObject) -> scenes.SceneObject:
         if not isinstance(item.material, scenes.Dielectric):
             return item
-        named = item.material.medium
-        medium = resolve_medium(named)
+        medium = item.material.resolved()
         if not medium.is_dispersive:
             return item
-        described = describe(medium, low_nm, high_nm)
-        if isinstance(named, DescribedMedium):
-            described = described.model_copy(update={"absorption": named.absorption})
-        material = item.material.model_copy(update={"medium": described})
+        absorbs = None if medium.absorption is None else describe_absorption(medium.absorption)
+        described = {"medium": describe(medium, low_nm, high_nm), "absorption": absorbs}
+        material = item.material.model_copy(update=described)
         return item.model_copy(update={"material": material})
 
     return scene.model_copy(update={"objects": tuple(map(redescribed, scene.objects))})

@@ -24,6 +24,7 @@ KEYS = st.sampled_from(
 TYPES = st.sampled_from(
     [
         *("sphere", "plane", "box", "prism", "polyhedron", "lens", "dielectric", "lambertian"),
+        *("mirror", "conductor", "napierian", "decadic", "extinction", "internal_transmittance"),
         *("beam", "point", "spot", "rectangle", "round", "slit", "cauchy", "table", "lines"),
     ]
 )

@@ -22,6 +22,19 @@ def test_a_named_medium_is_the_catalogues() -> None:
     assert Dielectric(medium="SF11").resolved() is glass("SF11")
 
 
+@pytest.mark.parametrize("name", ["air", "vacuum"])
+def test_a_bubble_has_index_1_of_its_own_reference(name: str) -> None:
+    medium = Dielectric(medium=name).resolved()
+    assert medium.name == medium.relative_to == name
+    assert medium.eta(550.0) == 1.0
+    assert not medium.is_dispersive
+
+
+def test_a_misspelt_medium_is_told_with_the_nearest() -> None:
+    with pytest.raises(SceneError, match="medium: unknown glass 'vacum'; nearest: vacuum"):
+        Dielectric(medium="vacum")
+
+
 def test_an_inline_sellmeier_is_the_glass_of_the_same_coefficients() -> None:
     medium = Dielectric(medium=N_BK7).resolved()
     assert medium.n_d == glass("N-BK7").n_d

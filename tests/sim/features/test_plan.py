@@ -25,7 +25,8 @@ from spectra import Cauchy, Medium, Tabulated, glass
 NOTHING = Features(
     spheres=False, flats=False, polyhedra=False, lenses=False, sellmeier=False, cauchy=False,
     tabulated=False, air_conversion=False, boundaries=False, reflected_branches=False,
-    dispersion=False, beams=False, sphere_lamps=False, rectangle_lamps=False,
+    dispersion=False, beams=False, sphere_lamps=False, rectangle_lamps=False, interfaces=False,
+    absorption=False, finishes=False,
 )  # fmt: skip
 AMBIENT = Medium("reference", Cauchy((1.0,)), (0.0, 1e9), "", "air")
 TABLE = Medium("table", Tabulated((400.0, 700.0), (1.5, 1.4)), (400.0, 700.0), "", "air")
@@ -197,11 +198,11 @@ def test_a_name_or_a_flag_is_not_registered_twice(registering):
 
 
 def test_a_new_feature_takes_part_in_everything(registering):
-    registering(dummy("absorption", Verdict("α L is at most 3e-7", 3e-7)))
+    registering(dummy("fluorescence", Verdict("α L is at most 3e-7", 3e-7)))
     plan = judge(scene_of(BALL, material=BK7))
-    assert not decision(plan, "absorption").on
+    assert not decision(plan, "fluorescence").on
     assert plan.bound == 3e-7
-    assert plan.report()["off"]["absorption"] == 3e-7
+    assert plan.report()["off"]["fluorescence"] == 3e-7
     assert plan.report()["bound"] == 3e-7
 
 

@@ -39,10 +39,9 @@ def rectangle_solid_angle():
 
 
 def _make_bench(lamp, *, ball=None, slab=None, floor=None, medium="N-BK7", film=FILM):
-    far = (0.0, -50.0, 0.0)
     shapes = {
-        "ball": ball or scenes.Sphere(position=far, radius=0.1),
-        "slab": slab or scenes.Box(position=far, size=(0.1, 0.1, 0.1)),
+        "ball": ball or scenes.Sphere(position=(0.0, -50.0, 0.0), radius=0.1),
+        "slab": slab or scenes.Box(position=(1.0, -50.0, 0.0), size=(0.1, 0.1, 0.1)),
         "floor": floor or scenes.Rectangle(position=(0.0, 0.0, 0.0), size=(1.0, 1.0)),
     }
     materials = {

@@ -87,6 +87,22 @@ def test_media_are_described_anew_as_well_as_they_can_be(small_scene):
     assert with_cauchy_media(small_scene).objects[1] is small_scene.objects[1]
 
 
+@pytest.mark.parametrize("rewrite", [with_cauchy_media, with_tabulated_media])
+@pytest.mark.parametrize("absorption", ["published", scenes.NapierianAbsorption(coefficient=3.0)])
+def test_media_described_in_another_way_keep_what_else_was_said_of_them(
+    small_scene, rewrite, absorption
+):
+    ball, *others = small_scene.objects
+    material = scenes.Dielectric(medium="SF11", absorption=absorption, priority=2)
+    item = ball.model_copy(update={"material": material})
+    scene = small_scene.model_copy(update={"objects": (item, *others)})
+    found = rewrite(scene).objects[0].material
+    assert found.priority == 2
+    before, after = material.resolved().absorption, found.resolved().absorption
+    assert after.napierian_per_m == before.napierian_per_m
+    assert after.wavelength_nm == before.wavelength_nm
+
+
 def test_a_later_feature_registers_its_axis_once(centre, own_registry):
     def vary(setup, quick):
         return {"none": setup.with_settings(max_interactions=7)}
