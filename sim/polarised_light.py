@@ -23,8 +23,8 @@ from sim.optics.dielectric import reflect, refract, sin2_theta_t
 from sim.optics.polarisation import (
     apply_surface,
     conductor_matrix,
-    fresnel_amplitudes,
     frame_across,
+    fresnel_amplitudes,
     share_of_flux,
     total_reflection_phase,
     turn_frame,

@@ -29,6 +29,6 @@ from sim.features.registry import (
 
 __all__ = [
     "BOUND_UNIT", "RECORDED_ON", "Build", "Cost", "Decision", "Feature", "FeaturePlan", "Features",
-    "LightMode", "Subject", "Verdict", "find_features", "judge_features", "needed", "null", "plan_features",
-    "register", "registered",
+    "LightMode", "Subject", "Verdict", "find_features", "judge_features", "needed", "null",
+    "plan_features", "register", "registered",
 ]  # fmt: skip

@@ -58,7 +58,8 @@ def _about_one_centre(shapes: Sequence[Shape]) -> bool:
 
 
 def _parallel_flats(shapes: Sequence[Shape]) -> bool:
-    flats = [one for one in shapes if isinstance(one, scenes.Rectangle | scenes.Disk | scenes.Plane)]
+    kinds = scenes.Rectangle | scenes.Disk | scenes.Plane
+    flats = [one for one in shapes if isinstance(one, kinds)]
     if len(flats) != len(shapes) or not flats:
         return False
     return all(_parallel(np.array(one.normal), np.array(flats[0].normal)) for one in flats)

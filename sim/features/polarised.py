@@ -38,15 +38,16 @@ def _judge_frames(subject: Subject, *, from_anywhere: bool) -> Verdict:
         return null("light is nowhere polarised")
     if subject.polarisation in ("averaged", "s-p"):
         return Verdict(_ASKED_FOR.format(subject.polarisation), 1.0, chosen=True)
-    if subject.polarisation == "stokes":
-        return needed(_ASKED_FOR.format("stokes"))
-    if subject.polarisers:
-        return needed("polarisers have planes of their own")
-    if any(one.polarisation is not None for one in subject.scene.emitters):
-        return needed("lamps are polarised")
     reason = planarity(subject.scene, from_anywhere=from_anywhere)
-    if reason is None:
-        return needed("planes of incidence may differ along a path")
+    lamps = sum(one.polarisation is not None for one in subject.scene.emitters)
+    for why, holds in (
+        (_ASKED_FOR.format("stokes"), subject.polarisation == "stokes"),
+        ("polarisers have planes of their own", bool(subject.polarisers)),
+        (f"{lamps} polarised lamps", lamps > 0),
+        ("planes of incidence may differ along a path", reason is None),
+    ):
+        if holds:
+            return needed(why)
     return Verdict(f"{reason}: the share of s over p says it all", _ROUNDING)
 
 

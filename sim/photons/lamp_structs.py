@@ -39,7 +39,7 @@ AIM_CELLS = wp.constant(32)
 
 @functools.cache
 def make_lamp_structs(precision: str) -> SimpleNamespace:
-    """Structs Emitter, Target, Segment (of a spectrum), Vibration and Lamps, with the scalar types."""
+    """Structs Emitter, Target, Segment (of a spectrum), Vibration and Lamps, and types."""
     types = precision_types(precision)
     real, vec3, mat33 = types.real, types.vec3, types.mat33
 

@@ -16,9 +16,9 @@ import warp as wp
 from sim.features import Features
 from sim.optics.dispersion import tabulated_index
 from sim.photons.emission import make_emission, make_wavelength_function
+from sim.photons.emitted_light import make_emitted_light
 from sim.photons.energy import BOOK_COLUMNS
 from sim.photons.lamp_structs import make_lamp_structs
-from sim.photons.emitted_light import make_emitted_light
 from sim.photons.photon_structs import (
     add_bounce,
     add_event,
