@@ -7,8 +7,11 @@ so that a field's type alone says whether it is scaled. Models built in Python a
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Final
+from pathlib import Path
+from typing import Annotated, Any, Final
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, AllowInfNan, Field, Strict, ValidationInfo
 
 from scenes.errors import Problem, refusal
@@ -33,8 +36,10 @@ __all__ = [
     "SignedRadius",
     "Size",
     "Wavelength",
+    "folder_of",
     "is_file",
     "length_text",
+    "metres",
     "unit_context",
 ]
 
@@ -54,16 +59,27 @@ WAVELENGTH_RANGE_NM: Final = (10.0, 1e6)
 """From the extreme ultraviolet to the far infrared: no optical medium is described beyond."""
 
 _CONTEXT_KEY = "length_unit"
+_FOLDER_KEY = "folder"
 
 
-def unit_context(length_unit: str) -> dict[str, str]:
-    """The validation context of a file whose lengths are in `length_unit` ("m" or "mm")."""
-    return {_CONTEXT_KEY: length_unit}
+def unit_context(length_unit: str, folder: Path | None = None) -> dict[str, Any]:
+    """The validation context of a file.
+
+    Args:
+        length_unit: of its lengths, "m" or "mm".
+        folder: where the files that it names are; None: the current folder.
+    """
+    return {_CONTEXT_KEY: length_unit, _FOLDER_KEY: folder or Path()}
 
 
 def is_file(info: ValidationInfo) -> bool:
     """Whether a file is being read, rather than a model built in Python."""
     return isinstance(info.context, Mapping) and _CONTEXT_KEY in info.context
+
+
+def folder_of(info: ValidationInfo) -> Path | None:
+    """The folder of the file that is being read; None for a model built in Python."""
+    return Path(info.context[_FOLDER_KEY]) if info.context and is_file(info) else None
 
 
 def _unit(info: ValidationInfo) -> str:
@@ -74,6 +90,11 @@ def length_text(length_m: float, info: ValidationInfo) -> str:
     """A length for a message, in the unit of the file that is being read."""
     unit = _unit(info)
     return f"{length_m * UNITS_PER_METRE[unit]:.6g} {unit}"
+
+
+def metres(lengths: NDArray[np.float64], info: ValidationInfo) -> NDArray[np.float64]:
+    """Lengths in the unit of the file that is being read, in metres."""
+    return lengths / UNITS_PER_METRE[_unit(info)]
 
 
 def _coordinate_m(length: float, info: ValidationInfo) -> float:

@@ -49,7 +49,7 @@ def load(name_or_path: str | os.PathLike[str]) -> Scene:
     """
     name = os.fspath(name_or_path)
     if name in gallery():
-        return _scene(_text(gallery_path(name)), shown_as=name, name=name)
+        return _scene(_text(gallery_path(name)), shown_as=name, name=name, folder=_GALLERY)
     path = Path(name)
     is_a_word = isinstance(name_or_path, str) and path.name == name and not path.suffix
     try:
@@ -58,20 +58,24 @@ def load(name_or_path: str | os.PathLike[str]) -> Scene:
         if is_a_word:
             raise _unknown_scene(name) from None
         raise SceneError(name, [_unreadable("there is no such file")]) from None
-    return _scene(text, shown_as=name, name=path.stem)
+    return _scene(text, shown_as=name, name=path.stem, folder=path.parent)
 
 
-def loads(text: str, *, name: str = "<string>") -> Scene:
+def loads(
+    text: str, *, name: str = "<string>", folder: str | os.PathLike[str] | None = None
+) -> Scene:
     """Read a scene from the text of a scene file.
 
     Args:
         text: TOML.
         name: What to call it in errors.
+        folder: Where the files are that it names; the current folder if not given.
 
     Raises:
         SceneError: if anything in it is wrong; every problem at once.
     """
-    return _scene(text, shown_as=name, name=name)
+    where = Path() if folder is None else Path(folder)
+    return _scene(text, shown_as=name, name=name, folder=where)
 
 
 def schema() -> dict[str, Any]:
@@ -79,7 +83,7 @@ def schema() -> dict[str, Any]:
     return {"$schema": _JSON_SCHEMA_DIALECT, **Scene.model_json_schema()}
 
 
-def _scene(text: str, *, shown_as: str, name: str) -> Scene:
+def _scene(text: str, *, shown_as: str, name: str, folder: Path) -> Scene:
     try:
         data = tomllib.loads(text)
     except RecursionError:
@@ -87,7 +91,8 @@ def _scene(text: str, *, shown_as: str, name: str) -> Scene:
     except ValueError as error:  # a TOMLDecodeError, or an integer of too many digits
         raise SceneError(shown_as, [Problem("", f"not TOML: {error}")]) from None
     unit = data.get("length_unit", "m")
-    context = unit_context(unit if isinstance(unit, str) and unit in UNITS_PER_METRE else "m")
+    known = isinstance(unit, str) and unit in UNITS_PER_METRE
+    context = unit_context(unit if known else "m", folder)
     try:
         scene = Scene.model_validate(data, context=context)
     except ValidationError as error:

@@ -8,7 +8,7 @@ from scenes.errors import Problem, refusal
 from scenes.materials import Dielectric, Material
 from scenes.model import SceneModel
 from scenes.polariser import Polariser
-from scenes.shapes import Disk, Plane, Rectangle, Shape
+from scenes.shapes import Disk, Plane, Rectangle, Shape, Triangulated
 
 __all__ = ["SceneObject"]
 
@@ -27,8 +27,9 @@ class SceneObject(SceneModel):
                 "lambertian, mirror, conductor or absorber,"
                 " or a closed shape: sphere, box, prism, lens, …"
             )
+            why = f" ({self.shape.openness})" if isinstance(self.shape, Triangulated) else ""
             message = (
-                f"a {self.shape.type} encloses no volume that a dielectric could fill;"
+                f"a {self.shape.type} encloses no volume that a dielectric could fill{why};"
                 f" allowed: {allowed}"
             )
             raise refusal(Problem("material.type", message, self.material.type, allowed))

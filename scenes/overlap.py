@@ -16,7 +16,7 @@ from scenes.materials import Dielectric
 from scenes.objects import SceneObject
 from scenes.shapes import Plane
 from scenes.shapes.depth import height_above
-from scenes.shapes.reach import may_meet
+from scenes.shapes.reach import close_pairs, may_meet
 
 __all__ = ["overlap_depth", "overlap_problems"]
 
@@ -35,13 +35,9 @@ def overlap_problems(objects: Mapping[int, SceneObject]) -> list[Problem]:
     solids = [
         (index, one) for index, one in objects.items() if isinstance(one.material, Dielectric)
     ]
-    problems = []
-    for place, (i, one) in enumerate(solids):
-        for j, other in solids[place + 1 :]:
-            problem = _clash(i, one, j, other)
-            if problem is not None:
-                problems.append(problem)
-    return problems
+    pairs = close_pairs([one.shape for _, one in solids])
+    problems = [_clash(*solids[first], *solids[second]) for first, second in pairs]
+    return [problem for problem in problems if problem is not None]
 
 
 def _clash(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem | None:

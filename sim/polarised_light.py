@@ -18,67 +18,16 @@ from types import SimpleNamespace
 
 import warp as wp
 
-from sim.features import Features, LightMode
-from sim.optics.dielectric import reflect, refract, sin2_theta_t
+from sim.features import LightMode
 from sim.optics.polarisation import (
     apply_surface,
-    conductor_matrix,
     frame_across,
-    fresnel_amplitudes,
     share_of_flux,
-    total_reflection_phase,
     turn_frame,
 )
 from sim.scene_structs import make_scene_structs
 
-__all__ = ["make_light", "make_surface_matrices"]
-
-
-@functools.cache
-def make_surface_matrices(precision: str, features: Features) -> SimpleNamespace:
-    """Device functions that tell a surface's matrix, see `sim.optics.polarisation`.
-
-    Returns:
-        A namespace with `cross_polarised(direction, normal, eta)`, which returns total or not,
-        (mean, half, cosine, sine) of the reflection, √(T_s T_p), and the two directions; and
-        `finish_matrix(cos_theta_i, value, k)`, the same four of a mirror of reflectance `value`
-        where k is negative, else of a metal of index `value` + i k.
-    """
-    structs = make_scene_structs(precision)
-    real, vec3, vec4 = structs.real, structs.vec3, structs.vec4
-
-    @wp.func
-    def cross_polarised(direction: vec3, normal: vec3, eta: real):
-        cos_theta_i = wp.min(-wp.dot(direction, normal), real(1.0))
-        reflected = reflect(direction, normal, cos_theta_i)
-        nothing = vec4(real(0.0), real(0.0), real(0.0), real(0.0))
-        if wp.static(not features.reflected_branches):
-            return 0, nothing, real(1.0), reflected, direction
-        if eta == real(1.0):
-            return 0, nothing, real(1.0), reflected, direction  # exactly, at any angle
-        sin2_t = sin2_theta_t(cos_theta_i, eta)
-        if sin2_t >= real(1.0):
-            cosine, sine = total_reflection_phase(cos_theta_i, sin2_t, eta)
-            whole = vec4(real(1.0), real(0.0), cosine, sine)
-            return 1, whole, real(0.0), reflected, reflected
-        cos_theta_t = wp.sqrt(real(1.0) - sin2_t)
-        r_s, r_p, together = fresnel_amplitudes(cos_theta_i, cos_theta_t, eta)
-        of_s = real(0.5) * r_s * r_s
-        of_p = real(0.5) * r_p * r_p
-        refracted = refract(direction, normal, cos_theta_i, cos_theta_t, eta)
-        return (
-            0, vec4(of_s + of_p, of_s - of_p, r_s * r_p, real(0.0)), together, reflected, refracted
-        )  # fmt: skip
-
-    @wp.func
-    def finish_matrix(cos_theta_i: real, value: real, k: real):
-        if k < real(0.0):
-            # As a perfect conductor, r_s = −1 and r_p = 1, times the root of its reflectance.
-            return vec4(value, real(0.0), -value, real(0.0))
-        mean, half, cosine, sine = conductor_matrix(cos_theta_i, value, k)
-        return vec4(mean, half, cosine, sine)
-
-    return SimpleNamespace(cross_polarised=cross_polarised, finish_matrix=finish_matrix)
+__all__ = ["make_light"]
 
 
 @functools.cache

@@ -17,10 +17,11 @@ import scenes
 from scenes.frames import frame_about
 from sim.device_arrays import struct_array
 from sim.features import Features, find_features
+from sim.mesh_data import compile_meshes
 from sim.method import Method
 from sim.precision import precision_types
 from sim.scene_media import SceneMedia, collect_media
-from sim.scene_neighbours import find_neighbours, touch_distance
+from sim.scene_neighbours import find_neighbours, rank_media, touch_distance
 from sim.scene_optics import fill_optics
 from sim.scene_structs import (
     ABSORBER,
@@ -31,6 +32,7 @@ from sim.scene_structs import (
     POLARISER,
     SHAPE_FLAT,
     SHAPE_LENS,
+    SHAPE_MESH,
     SHAPE_POLYHEDRON,
     SHAPE_SPHERE,
     make_scene_structs,
@@ -119,6 +121,7 @@ def compile_scene(
     device: str = "cpu",
     features: Features | None = None,
     method: Method | None = None,
+    polarisation: str = "auto",
 ) -> CompiledScene:
     """Lay `scene` out as device arrays.
 
@@ -128,11 +131,14 @@ def compile_scene(
         device: where the arrays live.
         features: what the kernels must handle; None: all that could change anything.
         method: how light is followed; None: as a rendering does, or as `features` say.
+        polarisation: the setting of this name, where `features` are None.
     """
     origin = find_origin(scene)
     media = collect_media(scene)
     if features is None:
-        features = find_features(scene, media.media, media.air_powers)
+        features = find_features(
+            scene, media.media, media.air_powers, polarisation=polarisation
+        )
     if method is not None:
         features = replace(features, method=method)
     structs = make_scene_structs(precision)
@@ -169,6 +175,7 @@ def _fill_shapes(
     rows: dict[str, list[Row]] = {
         name: [] for name in ("spheres", "flats", "polyhedra", "planes", "lenses")
     }
+    meshes: list[tuple[scenes.Triangulated, FloatArray, int]] = []
     places: list[tuple[int, int]] = []
     for prim, item in enumerate(scene.objects):
         shape = item.shape
@@ -182,6 +189,9 @@ def _fill_shapes(
         elif isinstance(shape, scenes.Rectangle | scenes.Disk | scenes.Plane):
             places.append((int(SHAPE_FLAT), len(rows["flats"])))
             rows["flats"].append(_flat_row(shape, centre, prim))
+        elif isinstance(shape, scenes.Triangulated):
+            places.append((int(SHAPE_MESH), len(meshes)))
+            meshes.append((shape, centre, prim))
         else:
             places.append((int(SHAPE_POLYHEDRON), len(rows["polyhedra"])))
             normals, offsets = shape.faces()
@@ -193,6 +203,7 @@ def _fill_shapes(
     data.polyhedra = struct_array(structs.Polyhedron, rows["polyhedra"], device)
     data.planes = struct_array(structs.Plane, rows["planes"], device)
     data.lenses = struct_array(structs.Lens, rows["lenses"], device)
+    data.meshes = compile_meshes(meshes, precision=precision, device=device)
     data.sphere_count = len(rows["spheres"])
     data.flat_count = len(rows["flats"])
     data.polyhedron_count = len(rows["polyhedra"])
@@ -232,12 +243,13 @@ def _bodies(
 ) -> list[Row]:
     """Each object's columns of a Body behind its shape's, see `sim.scene_structs`."""
     rows: list[Row] = []
+    ranks = rank_media(scene)
     first = 0
     for prim, item in enumerate(scene.objects):
         material, medium, finish = item.material, media.medium_of[prim], media.finish_of[prim]
-        priority, varies = 0, False
+        varies = False
         if isinstance(material, scenes.Dielectric):
-            kind, priority = DIELECTRIC, material.priority
+            kind = DIELECTRIC
             varies = medium != 0 and (media.varies[medium] or media.varies[0])
         elif isinstance(material, scenes.Mirror | scenes.Metal):
             kind = MIRROR if isinstance(material, scenes.Mirror) else METAL
@@ -248,7 +260,7 @@ def _bodies(
             kind = LAMBERTIAN if isinstance(material, scenes.Lambertian) else ABSORBER
         count = len(near[prim])
         rows.append(
-            (int(kind), medium, priority, finish, int(disperses and varies), first, count)
+            (int(kind), medium, ranks[prim], finish, int(disperses and varies), first, count)
         )
         first += count
     return rows

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import warp as wp
 
+from sim.mesh_structs import make_mesh_structs
 from sim.precision import precision_types
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "SELLMEIER",
     "SHAPE_FLAT",
     "SHAPE_LENS",
+    "SHAPE_MESH",
     "SHAPE_POLYHEDRON",
     "SHAPE_SPHERE",
     "TABULATED",
@@ -43,6 +45,7 @@ SHAPE_SPHERE = wp.constant(0)
 SHAPE_FLAT = wp.constant(1)
 SHAPE_POLYHEDRON = wp.constant(2)
 SHAPE_LENS = wp.constant(3)
+SHAPE_MESH = wp.constant(4)
 
 
 @functools.cache
@@ -133,6 +136,9 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
     class Interaction:
         """What the surface does. `normal` faces the incoming ray; `side` 1 is the inside or back.
 
+        `part` is the part of the object's surface that this point is of: the face, of a mesh the
+        patch that sharp edges bound.
+
         `prim2` and `face2` are a second surface in the same place, −1 for none. `medium` is the
         one on the ray's side, `alpha` its absorption coefficient [1/m]. `absorbed` is the part of
         the flux that is lost on the way here and, at a mirror or a metal, to the surface.
@@ -153,6 +159,7 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
         normal: vec3
         prim: int
         face: int
+        part: int
         prim2: int
         face2: int
         side: int
@@ -186,6 +193,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
     shapes, rays = make_shape_structs(precision), make_ray_structs(precision)
     sphere, flat, plane = shapes.Sphere, shapes.Flat, shapes.Plane
     polyhedron, lens = shapes.Polyhedron, shapes.Lens
+    meshes_type = make_mesh_structs(precision).Meshes
 
     @wp.struct
     class Body:
@@ -200,7 +208,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         row: int
         material: int
         medium_inside: int
-        priority: int
+        rank: int  # of two media in one place the higher rank's fills it
         finish: int  # row of its mirror or metal
         dispersive: int
         neighbour_first: int
@@ -234,6 +242,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         polyhedra: wp.array(dtype=polyhedron)
         planes: wp.array(dtype=plane)
         lenses: wp.array(dtype=lens)
+        meshes: meshes_type
         bodies: wp.array(dtype=Body)
         neighbours: wp.array(dtype=int)
         media: wp.array(dtype=Medium)

@@ -1,6 +1,7 @@
 """Which media meet at a point of a surface, where solids may nest, touch or overlap.
 
-Where several solids claim a point, the one of the highest priority fills it. Nothing is carried
+Where several solids claim a point, the one of the highest priority fills it, of equal ones the
+first in the scene, so that there is never a doubt, however little they overlap. Nothing is carried
 along a path: at each vertex the solids near the surface's own object are asked whether they hold
 the point, so that no ray can lose count, wherever it started. Which objects are near another is
 known from the start.
@@ -26,10 +27,12 @@ from sim.geometry.height import (
     height_above_polyhedron,
     height_above_sphere,
 )
+from sim.geometry.mesh_height import height_above_mesh
 from sim.scene_structs import (
     DIELECTRIC,
     SHAPE_FLAT,
     SHAPE_LENS,
+    SHAPE_MESH,
     SHAPE_POLYHEDRON,
     SHAPE_SPHERE,
     make_scene_structs,
@@ -37,8 +40,8 @@ from sim.scene_structs import (
 
 __all__ = ["make_surroundings"]
 
-LOWEST = wp.constant(-1000000)
-"""The ambient medium's priority."""
+LOWEST = wp.constant(-1)
+"""The ambient medium's rank."""
 
 
 @functools.cache
@@ -72,6 +75,12 @@ def make_height_function(precision: str, features: Features) -> object:
                 lens = scene.lenses[body.row]
                 height, face, normal = height_above_lens(lens, lens.frame * (point - lens.centre))
                 normal = wp.transpose(lens.frame) * normal
+        if wp.static(features.meshes):
+            if body.shape == SHAPE_MESH:
+                mesh = scene.meshes.rows[body.row]
+                height, face, normal = height_above_mesh(
+                    scene.meshes, mesh, point - mesh.centre, scene.touch
+                )
         return height, face, normal
 
     return height_above
@@ -103,16 +112,16 @@ def make_surroundings(precision: str, features: Features) -> SimpleNamespace:
     def surroundings_of(scene: scene_type, prim: int, side: int, point: vec3, normal: vec3):
         found = Surroundings()
         found.prim = -1
-        near_priority = int(LOWEST)
-        far_priority = int(LOWEST)
+        near_rank = int(LOWEST)
+        far_rank = int(LOWEST)
         body = scene.bodies[prim]
         if body.material == DIELECTRIC:
             if side == 1:
                 found.near = body.medium_inside
-                near_priority = body.priority
+                near_rank = body.rank
             else:
                 found.far = body.medium_inside
-                far_priority = body.priority
+                far_rank = body.rank
         k = int(0)
         while k < body.neighbour_count:
             other = scene.neighbours[body.neighbour_first + k]
@@ -133,12 +142,12 @@ def make_surroundings(precision: str, features: Features) -> SimpleNamespace:
                             found.side = int(1)
                             found.normal = -up
                 if ally.material == DIELECTRIC:
-                    if holds_near and ally.priority > near_priority:
+                    if holds_near and ally.rank > near_rank:
                         found.near = ally.medium_inside
-                        near_priority = ally.priority
-                    if holds_far and ally.priority > far_priority:
+                        near_rank = ally.rank
+                    if holds_far and ally.rank > far_rank:
                         found.far = ally.medium_inside
-                        far_priority = ally.priority
+                        far_rank = ally.rank
             k += 1
         return found
 

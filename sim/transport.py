@@ -20,29 +20,23 @@ import warp as wp
 from sim.features import Features
 from sim.geometry.flat import intersect_plane, plane_coordinates
 from sim.geometry.lens import intersect_lens, lens_normal
+from sim.geometry.mesh import facet_normal, intersect_mesh, mesh_normal
 from sim.geometry.polyhedron import intersect_polyhedron
 from sim.geometry.sphere import intersect_sphere
 from sim.optics.absorption import absorbed_fraction
-from sim.optics.conductor import conductor_reflectance
-from sim.optics.dielectric import (
-    fresnel_reflectance,
-    reflect,
-    refract,
-    renormalize,
-    schlick_reflectance,
-    sin2_theta_t,
-)
+from sim.optics.dielectric import reflect, renormalize
 from sim.optics.dispersion import tabulated_index
 from sim.path_media import make_media_functions
-from sim.polarised_light import make_surface_matrices
 from sim.scene_structs import (
     DIELECTRIC,
     LAMBERTIAN,
     METAL,
     MIRROR,
     POLARISER,
+    SHAPE_MESH,
     make_scene_structs,
 )
+from sim.surfaces import make_surfaces
 from sim.surroundings import make_surroundings
 
 __all__ = [
@@ -64,6 +58,10 @@ EVENT_ABSORB = wp.constant(3)
 """An absorber: the light ends here."""
 EVENT_PASS = wp.constant(4)
 """A face hidden by another solid, the same medium on both sides: the light goes straight on."""
+
+
+MIN_COSINE = wp.constant(1e-3)
+"""A ray that grazes a face is not moved along it any further than one of this cosine."""
 
 
 @functools.cache
@@ -159,6 +157,23 @@ def make_intersect(precision: str, features: Features):
                     normal = lens_normal(lens, face, origin + direction * t)
                     hit.normal = wp.normalize(wp.transpose(lens.frame) * normal)
                 i += 1
+        if wp.static(features.meshes):
+            i = int(0)
+            while i < scene.meshes.count:
+                mesh = scene.meshes.rows[i]
+                leaving_face = face_left(ray, mesh.prim)
+                local = ray.origin - mesh.centre
+                t, face = intersect_mesh(
+                    scene.meshes, mesh, local, ray.direction, leaving_face, hit.t
+                )
+                if t >= real(0.0) and t < hit.t:
+                    hit.t = t
+                    hit.prim = mesh.prim
+                    hit.face = face
+                    hit.normal = mesh_normal(
+                        scene.meshes, mesh, face, local + ray.direction * t, ray.direction
+                    )
+                i += 1
         return hit
 
     return intersect
@@ -184,30 +199,8 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
     wavelength_of = media.wavelength_of
     surroundings_of = make_surroundings(precision, features).surroundings_of
     polarised = features.polarises
-    matrices = make_surface_matrices(precision, features)
-    cross_polarised, finish_matrix = matrices.cross_polarised, matrices.finish_matrix
-
-    @wp.func
-    def cross_boundary(direction: vec3, normal: vec3, eta: real):
-        """Total or not, reflectance, and the two directions at a boundary of relative index η."""
-        cos_theta_i = wp.min(-wp.dot(direction, normal), real(1.0))
-        reflected = reflect(direction, normal, cos_theta_i)
-        if wp.static(not features.reflected_branches):
-            return 0, real(0.0), reflected, direction
-        if eta == real(1.0):
-            return 0, real(0.0), reflected, direction  # exactly, at any angle
-        sin2_t = sin2_theta_t(cos_theta_i, eta)
-        if sin2_t >= real(1.0):
-            return 1, real(1.0), reflected, reflected
-        cos_theta_t = wp.sqrt(real(1.0) - sin2_t)
-        reflectance = real(0.0)
-        if wp.static(features.method.fresnel == "exact"):
-            r_s, r_p = fresnel_reflectance(cos_theta_i, cos_theta_t, eta)
-            reflectance = real(0.5) * (r_s + r_p)
-        if wp.static(features.method.fresnel == "schlick"):
-            reflectance = schlick_reflectance(cos_theta_i, cos_theta_t, eta)
-        refracted = refract(direction, normal, cos_theta_i, cos_theta_t, eta)
-        return 0, reflectance, reflected, refracted
+    surfaces = make_surfaces(precision, features)
+    cross, finish_matrix = surfaces.cross, surfaces.finish
 
     @wp.func
     def finish_constants(scene: scene_type, finish: int, indices: indices_type, medium: int):
@@ -221,12 +214,18 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         return value / indices[medium], k / indices[medium]
 
     @wp.func
-    def finish_reflectance(value: real, k: real, cos_theta_i: real):
-        """Of a mirror as it is, of a metal by Fresnel's equations with a complex index."""
-        if k < real(0.0):
-            return value
-        r_s, r_p = conductor_reflectance(cos_theta_i, value, k)
-        return real(0.5) * (r_s + r_p)
+    def facet_toward(scene: scene_type, met: interaction_type, direction: vec3):
+        """The surface's own normal toward the ray, of a mesh with smooth normals the facet's.
+
+        Near grazing a smooth normal can send light through the facet that should reflect it, or
+        back from one that it should pass: there the facet's normal rules.
+        """
+        normal = met.normal
+        if scene.bodies[met.prim].shape == SHAPE_MESH:
+            normal = facet_normal(scene.meshes, met.face)
+            if wp.dot(direction, normal) > real(0.0):
+                normal = -normal
+        return normal
 
     @wp.func
     def scatter(scene: scene_type, ray: ray_type, hit: hit_type, indices: indices_type):
@@ -268,6 +267,10 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                             met.side = found.side
                             met.normal = found.normal
                             met.dispersive = body.dispersive
+            met.part = met.face
+            if wp.static(features.meshes):
+                if scene.bodies[met.prim].shape == SHAPE_MESH:
+                    met.part = scene.meshes.triangles[met.face].patch
             met.event = EVENT_ABSORB
             if body.material == LAMBERTIAN:
                 met.event = EVENT_DEPOSIT
@@ -282,29 +285,47 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                         met.event = EVENT_PASS
                         met.dispersive = 0
                     eta = indices[met.medium] / indices[beyond]
-                    if wp.static(not polarised):
-                        total, reflectance, reflected, refracted = cross_boundary(
-                            ray.direction, met.normal, eta
-                        )
-                        met.total = total
-                        met.reflectance = reflectance
-                        met.reflected = reflected
-                        met.refracted = refracted
+                    total, matrix, together, reflected, refracted = cross(
+                        ray.direction, met.normal, eta
+                    )
+                    if wp.static(features.meshes):
+                        facet = facet_toward(scene, met, ray.direction)
+                        passes = total == 1 or wp.dot(refracted, facet) < real(0.0)
+                        if not (passes and wp.dot(reflected, facet) > real(0.0)):
+                            met.normal = facet
+                            total, matrix, together, reflected, refracted = cross(
+                                ray.direction, facet, eta
+                            )
+                    met.eta = eta
+                    met.total = total
+                    met.reflectance = matrix[0]
                     if wp.static(polarised):
-                        whole, matrix, together, mirrored, bent = cross_polarised(
-                            ray.direction, met.normal, eta
-                        )
-                        met.total = whole
                         met.matrix = matrix
                         met.together = together
-                        met.reflectance = matrix[0]
-                        met.reflected = mirrored
-                        met.refracted = bent
-                    met.eta = eta
+                    met.reflected = reflected
+                    met.refracted = refracted
+            if wp.static(features.interfaces):
+                # A third face in the place that the ray has just left has been dealt with there.
+                # Behind it, by more than the faces can be apart, no other one is met again.
+                if ray.prim >= 0 and hit.prim != ray.prim and body.material == DIELECTRIC:
+                    cos_theta = wp.abs(wp.dot(ray.direction, hit.normal))
+                    if hit.t * cos_theta <= scene.touch:
+                        met.event = EVENT_PASS
+                        met.dispersive = 0
+                        met.point += ray.direction * (
+                            scene.touch / wp.max(cos_theta, real(MIN_COSINE))
+                        )
+                        met.prim2 = -1
             if wp.static(features.finishes):
                 if body.material == MIRROR or body.material == METAL:
                     met.event = EVENT_BOUNDARY
                     cos_theta_i = wp.min(-wp.dot(ray.direction, met.normal), real(1.0))
+                    if wp.static(features.meshes):
+                        facet = facet_toward(scene, met, ray.direction)
+                        glance = reflect(ray.direction, met.normal, cos_theta_i)
+                        if wp.dot(glance, facet) <= real(0.0):
+                            met.normal = facet
+                            cos_theta_i = wp.min(-wp.dot(ray.direction, facet), real(1.0))
                     met.total = 1
                     met.opaque = 1
                     met.eta = real(1.0)
@@ -313,7 +334,7 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                     met.refracted = met.reflected
                     value, k = finish_constants(scene, body.finish, indices, met.medium)
                     if wp.static(not polarised):
-                        met.absorbed = real(1.0) - finish_reflectance(value, k, cos_theta_i)
+                        met.absorbed = real(1.0) - finish_matrix(cos_theta_i, value, k)[0]
                     if wp.static(polarised):
                         met.matrix = finish_matrix(cos_theta_i, value, k)
             if wp.static(features.polarisers):

@@ -8,10 +8,14 @@ from scenes.shapes.bounds import Bounds
 from scenes.shapes.box import Box
 from scenes.shapes.convex import ConvexSolid, Faces
 from scenes.shapes.flat import Disk, FlatRectangle, Plane, Rectangle
+from scenes.shapes.heightfield import HeightField, Wave
 from scenes.shapes.lens import Lens, LensSurface
+from scenes.shapes.mesh import Mesh
 from scenes.shapes.polyhedron import Polyhedron
 from scenes.shapes.prism import Prism
 from scenes.shapes.sphere import Sphere
+from scenes.shapes.surface import Surface
+from scenes.shapes.triangulated import Triangulated
 
 __all__ = [
     "Bounds",
@@ -20,18 +24,23 @@ __all__ = [
     "Disk",
     "Faces",
     "FlatRectangle",
+    "HeightField",
     "Lens",
     "LensSurface",
+    "Mesh",
     "Plane",
     "Polyhedron",
     "Prism",
     "Rectangle",
     "Shape",
     "Sphere",
+    "Surface",
+    "Triangulated",
+    "Wave",
 ]
 
 Shape = Annotated[
-    Sphere | Plane | Rectangle | Disk | Box | Prism | Polyhedron | Lens,
+    Sphere | Plane | Rectangle | Disk | Box | Prism | Polyhedron | Lens | Mesh | HeightField,
     Field(discriminator="type"),
 ]
 """Any shape."""

@@ -1,7 +1,7 @@
 """How far shapes reach in a direction, and so whether two of them can meet."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from scenes.shapes.convex import ConvexSolid
 from scenes.shapes.flat import Disk, FlatRectangle, Plane
 from scenes.shapes.lens import Lens
+from scenes.shapes.triangulated import Triangulated
 
-__all__ = ["may_meet", "reach"]
+__all__ = ["close_pairs", "may_meet", "reach"]
 
 FloatArray = NDArray[np.float64]
 
@@ -29,7 +30,7 @@ def reach(shape: Any, direction: FloatArray) -> float:
     if isinstance(shape, Plane):
         across = float(np.linalg.norm(np.cross(shape.normal, direction)))
         return math.inf if across > 1e-12 else float(np.dot(shape.position, direction))
-    if isinstance(shape, ConvexSolid):
+    if isinstance(shape, ConvexSolid | Triangulated):
         return float(np.max(shape.vertices_world() @ direction))
     middle = float(np.dot(shape.position, direction))
     if isinstance(shape, FlatRectangle):
@@ -48,6 +49,21 @@ def reach(shape: Any, direction: FloatArray) -> float:
         )
     centre, radius = shape.bounding_sphere()
     return float(np.dot(centre, direction)) + float(radius)
+
+
+def close_pairs(shapes: Sequence[Any], slack: float = 0.0) -> Iterator[tuple[int, int]]:
+    """Pairs i < j of shapes whose bounding spheres are no further apart than `slack` [m].
+
+    It sorts out nearly all pairs of a scene of many objects at little cost.
+    """
+    centres, radii = np.zeros((len(shapes), 3)), np.full(len(shapes), np.inf)
+    for index, shape in enumerate(shapes):
+        if not isinstance(shape, Plane):
+            centres[index], radii[index] = shape.bounding_sphere()
+    for i in range(len(shapes) - 1):
+        apart = np.linalg.norm(centres[i + 1 :] - centres[i], axis=1)
+        for j in np.flatnonzero(apart - radii[i + 1 :] - radii[i] <= slack):
+            yield i, i + 1 + int(j)
 
 
 def may_meet(one: Any, other: Any, slack: float = 0.0) -> bool:

@@ -51,6 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                              "writing the files comes on top")
     parser.add_argument("--error-map", type=png_file, metavar="OUT.png",
                         help="also draw each pixel's relative error")
+    parser.add_argument("--photon-map", action="store_true",
+                        help="draw the photons that the first pass stores, coloured by wavelength, "
+                             "and nothing else (default file: SCENE.photons.png, or --png)")
     parser.add_argument("--radius", type=float, metavar="M",
                         help="gather radius of the first pass [m] (default: two pixels' width)")
     parser.add_argument("--alpha", type=float, default=2 / 3, metavar="A",
@@ -93,6 +96,9 @@ def run(arguments: argparse.Namespace) -> None:
     given = {name: value for name, value in vars(arguments).items() if name in names}
     settings = RenderSettings(**given)
     scene = load(arguments.scene)
+    if arguments.photon_map:
+        _draw_photons(scene, settings, arguments.png or Path(f"{scene.source_name}.photons.png"))
+        return
     exr_path = arguments.output or Path(f"{scene.source_name}.exr")
     png_path = arguments.png or exr_path.with_suffix(".png")
     check_writable(exr_path)
@@ -111,6 +117,22 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.verbose:
         _print_books(picture)
         _print_timings(picture.timings, seconds)
+
+
+def _draw_photons(scene: Scene, settings: RenderSettings, path: Path) -> None:
+    """Draw the first pass's photons instead of a picture."""
+    from sim.atomic_file import check_writable, write_whole
+    from sim.image.png import encode_png
+    from sim.interruption import run_interruptibly
+
+    def work() -> memoryview:
+        from sim.photon_picture import picture_photons
+
+        return encode_png(picture_photons(scene, settings))
+
+    check_writable(path)
+    write_whole(path, run_interruptibly(work))
+    print(f"{path}: the photons that the first pass stores")
 
 
 def _rendered(

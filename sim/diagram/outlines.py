@@ -7,7 +7,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from scenes.emitters import Beam, Emitter, RectangleLamp, RoundProfile, SlitProfile, SphereLamp
 from scenes.frames import frame_about
-from scenes.shapes import ConvexSolid, Disk, FlatRectangle, Lens, LensSurface, Sphere
+from scenes.shapes import (
+    ConvexSolid,
+    Disk,
+    FlatRectangle,
+    Lens,
+    LensSurface,
+    Sphere,
+    Triangulated,
+)
 from scenes.shapes import Shape as AnyShape
 
 __all__ = ["Curve", "emitter_outline", "shape_outline"]
@@ -27,8 +35,8 @@ def shape_outline(shape: AnyShape, toward_viewer: NDArray[np.float64]) -> Curve 
         toward_viewer: Unit vector (3,) toward who looks.
 
     Returns:
-        The silhouette; of a lens, the section through its axis that faces the viewer. None for
-        an infinite plane.
+        The silhouette; of a lens, the section through its axis that faces the viewer, and of a
+        mesh or a height field its hull's. None for an infinite plane.
     """
     match shape:
         case Sphere():
@@ -39,7 +47,7 @@ def shape_outline(shape: AnyShape, toward_viewer: NDArray[np.float64]) -> Curve 
             return _rectangle(shape.position, shape.frame()[:2], shape.size)
         case Lens():
             return _lens_section(shape, toward_viewer)
-        case ConvexSolid():
+        case ConvexSolid() | Triangulated():
             return _silhouette(shape.vertices_world(), toward_viewer)
         case _:
             return None
@@ -85,11 +93,18 @@ def _rectangle(
 
 
 def _silhouette(vertices: NDArray[np.float64], toward_viewer: NDArray[np.float64]) -> Curve:
-    """The vertices on the convex hull of what is seen, in order around it."""
-    from scipy.spatial import ConvexHull
+    """The vertices on the convex hull of what is seen, in order around it.
+
+    Of a flat sheet seen from its edge, the two ends.
+    """
+    from scipy.spatial import ConvexHull, QhullError
 
     seen = vertices @ np.stack(_across(toward_viewer), axis=-1)
-    around: NDArray[np.intp] = ConvexHull(seen).vertices
+    try:
+        around: NDArray[np.intp] = ConvexHull(seen).vertices
+    except QhullError:
+        along = seen @ (seen[np.argmax(np.linalg.norm(seen - seen[0], axis=1))] - seen[0])
+        around = np.array([np.argmin(along), np.argmax(along)])
     return vertices[around]
 
 

@@ -19,7 +19,7 @@ class Features:
     allows to leave it out: `Features()` is the full kernel's.
 
     Attributes:
-        spheres, flats, polyhedra, lenses: which shapes a ray can meet.
+        spheres, flats, polyhedra, lenses, meshes: which shapes a ray can meet.
         sellmeier, cauchy, tabulated: which dispersion formulas the media use.
         air_conversion: some index is converted between "relative to air" and "to vacuum".
         boundaries: light can meet a boundary between two media.
@@ -44,6 +44,7 @@ class Features:
     flats: bool = True
     polyhedra: bool = True
     lenses: bool = True
+    meshes: bool = True
     sellmeier: bool = True
     cauchy: bool = True
     tabulated: bool = True

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenes import Dielectric, Disk, Lambertian, Metal, Mirror, Plane, Polariser, Rectangle
+from scenes import Dielectric, Disk, Lambertian, Plane, Rectangle, is_specular
 from sim.features.boundary_error import path_error, relative_variations
 from sim.features.registry import (
     Cost,
@@ -114,12 +114,15 @@ def _judge_undispersed(subject: Subject) -> Verdict:
     ambient = subject.varying_media[0]
     for item in subject.scene.objects:
         if isinstance(item.material, Dielectric):
-            if not (ambient or varies.get(item.material.resolved(), False)):
+            medium = item.material.resolved()
+            if medium == subject.media[0] or not (ambient or varies.get(medium, False)):
                 return needed(f"light keeps its colours together in {item.name}")
-        elif isinstance(item.material, Mirror | Metal) and not item.material.is_coloured:
+        elif is_specular(item.material) and not getattr(item.material, "is_coloured", False):
             return needed(f"light keeps its colours together on {item.name}")
-        elif isinstance(item.material, Polariser):
-            return needed(f"light keeps its colours together through {item.name}")
+    for i, j in subject.near_pairs:
+        pair = subject.scene.objects[i], subject.scene.objects[j]
+        if all(isinstance(one.material, Dielectric) for one in pair):
+            return needed(f"{pair[0].name} and {pair[1].name} may hide faces of each other")
     return null("what is in the map has met glass, and all glass is dispersive")
 
 

@@ -4,36 +4,18 @@ import math
 
 import numpy as np
 
-import scenes
 from sim.features.boundary_error import BOUNDARIES
 from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
-from sim.scene_neighbours import find_neighbours
+from sim.scene_neighbours import scene_size
 
 __all__: list[str] = []
-
-_NEAR = 1e-4
-"""Solids within this part of the scene's size of each other may touch, whatever the precision."""
 
 _SAMPLES = 257
 
 
-def _size(scene: scenes.Scene) -> float:
-    """Diameter of a sphere around the finite objects, at most twice too large [m]."""
-    spheres = [
-        item.shape.bounding_sphere()
-        for item in scene.objects
-        if not isinstance(item.shape, scenes.Plane)
-    ]
-    if not spheres:
-        return 1.0
-    middle = np.mean([centre for centre, _ in spheres], axis=0)
-    return 2.0 * max(float(np.linalg.norm(centre - middle)) + radius for centre, radius in spheres)
-
-
 def _judge_interfaces(subject: Subject) -> Verdict:
     names = [item.name for item in subject.scene.objects]
-    near = find_neighbours(subject.scene, _NEAR * _size(subject.scene))
-    pairs = [f"{names[i]} and {names[j]}" for i, row in enumerate(near) for j in row if i < j]
+    pairs = [f"{names[i]} and {names[j]}" for i, j in subject.near_pairs]
     if not pairs:
         return null("no solid is near another object")
     more = f", and {len(pairs) - 1} pairs more" if len(pairs) > 1 else ""
@@ -50,7 +32,13 @@ register(Feature(
 
 
 def _judge_absorption(subject: Subject) -> Verdict:
-    """What is lost on a way as long as light can be inside: α L, L = `BOUNDARIES` diameters."""
+    """What is lost on a way as long as light can be inside: α L, L = `BOUNDARIES` diameters.
+
+    In the ambient medium ways know no bounds.
+    """
+    ambient = subject.media[0]
+    if ambient.absorption is not None and not ambient.absorption.is_transparent:
+        return needed(f"{ambient.name}, all around, absorbs")
     edges_nm = subject.scene.film.edges_nm
     wavelength_nm = np.linspace(edges_nm[0], edges_nm[-1], _SAMPLES)
     strongest, name = 0.0, ""
@@ -66,7 +54,7 @@ def _judge_absorption(subject: Subject) -> Verdict:
             strongest, name = float(alpha), medium.name
     if strongest == 0.0:
         return null("no medium absorbs")
-    bound = -math.expm1(-strongest * BOUNDARIES * _size(subject.scene))
+    bound = -math.expm1(-strongest * BOUNDARIES * scene_size(subject.scene))
     return Verdict(f"{name} absorbs up to {strongest:.3g} per metre", bound)
 
 

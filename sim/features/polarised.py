@@ -1,15 +1,33 @@
 """Features: how the polarisation of light is followed from surface to surface."""
 
-from scenes import Dielectric, Metal
+from scenes import Dielectric, Metal, Polariser
+from sim.errors import SettingsError
 from sim.features.planarity import planarity
 from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
 
-__all__: list[str] = []
+__all__ = ["require_polarisation"]
 
 _ROUNDING = 1e-12
 """What Stokes vectors and shares of s and p can differ by where both are right, in float64."""
 
 _ASKED_FOR = 'asked for by polarisation = "{}"'
+
+
+def require_polarisation(subject: Subject) -> None:
+    """Refuse to follow by shares of s and p what is polarised across them.
+
+    Raises:
+        SettingsError: it is asked for, and there are polarisers or polarised lamps.
+    """
+    names = [
+        one.name
+        for one in (*subject.scene.objects, *subject.scene.emitters)
+        if isinstance(getattr(one, "material", None), Polariser)
+        or getattr(one, "polarisation", None) is not None
+    ]
+    if subject.polarisation == "s-p" and names:
+        allowed = f"'auto', 'averaged' or 'stokes': {names[0]} polarises in a plane of its own"
+        raise SettingsError("polarisation", subject.polarisation, allowed)
 
 
 def _judge_polarisation(subject: Subject) -> Verdict:

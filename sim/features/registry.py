@@ -18,6 +18,7 @@ from typing import Literal
 
 import scenes
 from sim.features.flags import Features
+from sim.scene_neighbours import near_pairs
 from spectra import Medium
 
 __all__ = [
@@ -57,6 +58,11 @@ class Subject:
     def has_boundaries(self) -> bool:
         """Whether any object is made of a medium."""
         return any(isinstance(item.material, scenes.Dielectric) for item in self.scene.objects)
+
+    @cached_property
+    def near_pairs(self) -> list[tuple[int, int]]:
+        """Pairs of objects, one of them made of a medium, that may touch, nest or overlap."""
+        return near_pairs(self.scene)
 
     @cached_property
     def varying_media(self) -> tuple[bool, ...]:

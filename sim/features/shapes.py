@@ -48,3 +48,10 @@ register(Feature(
     flag="lenses",
     cost=Cost(1.06, "ball"),
 ))  # fmt: skip
+
+register(Feature(
+    name="meshes",
+    what="rays meet triangles of meshes and height fields, by a tree of boxes",
+    judge=_some("mesh", "meshes", scenes.Triangulated),
+    flag="meshes",
+))  # fmt: skip

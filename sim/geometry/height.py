@@ -62,26 +62,37 @@ def cap_sag(rho2: Any, curvature: Any, one_plus_conic: Any):
 
 
 @wp.func
+def cap_cosine(rho2: Any, curvature: Any, one_plus_conic: Any):
+    """Cosine of a cap's slope against its vertex's tangent plane, `rho2` = ρ² off the axis."""
+    zero = type(curvature)(0.0)
+    one = type(curvature)(1.0)
+    slope2 = curvature * curvature * rho2
+    root2 = wp.max(one - one_plus_conic * slope2, zero)
+    if root2 + slope2 == zero:
+        return one
+    return wp.sqrt(root2 / (root2 + slope2))
+
+
+@wp.func
 def height_above_lens(lens: Any, point: Any):
     """Height [m] above a lens, the nearest face, its outward normal; all in the lens's frame."""
     rho2 = point[0] * point[0] + point[1] * point[1]
     within2 = wp.min(rho2, lens.radius * lens.radius)
     z_front = cap_sag(within2, lens.curvature_front, lens.one_plus_conic_front)
     z_back = cap_sag(within2, lens.curvature_back, lens.one_plus_conic_back)
-    front = wp.normalize(lens_normal(lens, FRONT_FACE, point))
-    back = wp.normalize(lens_normal(lens, BACK_FACE, point))
     # Along the axis first; the slope of the cap turns that into a distance.
-    height = (z_front - lens.half_thickness - point[2]) * wp.abs(front[2])
+    height = (z_front - lens.half_thickness - point[2]) * cap_cosine(
+        within2, lens.curvature_front, lens.one_plus_conic_front
+    )
     face = int(FRONT_FACE)
-    normal = front
-    above_back = (point[2] - lens.half_thickness - z_back) * wp.abs(back[2])
+    above_back = (point[2] - lens.half_thickness - z_back) * cap_cosine(
+        within2, lens.curvature_back, lens.one_plus_conic_back
+    )
     if above_back > height:
         height = above_back
         face = BACK_FACE
-        normal = back
     above_rim = wp.sqrt(rho2) - lens.radius
     if above_rim > height:
         height = above_rim
         face = RIM_FACE
-        normal = wp.normalize(lens_normal(lens, RIM_FACE, point))
-    return height, face, normal
+    return height, face, wp.normalize(lens_normal(lens, face, point))

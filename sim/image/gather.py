@@ -139,7 +139,7 @@ def make_gather(precision: str, features: Features) -> object:
         photons: map_type, receivers: receivers_type, met: interaction_type, group: int, band: int
     ):
         """Σ k w and Σ b w of one group's photons, as far as they shine in `band`."""
-        surface = surface_key(met.prim, met.face, met.side)
+        surface = surface_key(met.prim, met.part, met.side)
         inv_radius2 = real(1.0) / (photons.radius * photons.radius)
         query = wp.hash_grid_query(photons.grid, met.point, photons.radius, group)
         candidate = int(0)
@@ -166,7 +166,7 @@ def make_gather(precision: str, features: Features) -> object:
         Returns the luminance of Σ `peak` b w.
         """
         bands = receivers.bands
-        surface = surface_key(met.prim, met.face, met.side)
+        surface = surface_key(met.prim, met.part, met.side)
         inv_radius2 = real(1.0) / (photons.radius * photons.radius)
         query = wp.hash_grid_query(photons.grid, met.point, photons.radius)
         candidate = int(0)

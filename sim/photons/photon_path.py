@@ -215,7 +215,7 @@ def make_follow(precision: str, features: Features) -> object:
                         if slot < job.slot_count:
                             store(
                                 out_photons, job.first_slot + slot, met.point, ray.direction,
-                                wavelength_nm, flux, surface_key(met.prim, met.face, met.side),
+                                wavelength_nm, flux, surface_key(met.prim, met.part, met.side),
                                 history, job.emitter,
                             )
                     goes_on = real(0.0)

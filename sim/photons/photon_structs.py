@@ -9,8 +9,8 @@ from sim.precision import precision_types
 
 __all__ = [
     "HISTORY_LIMIT",
-    "MAX_FACES",
     "MAX_OBJECTS",
+    "MAX_PARTS",
     "add_bounce",
     "add_event",
     "bounces_of",
@@ -22,17 +22,17 @@ __all__ = [
 ]
 
 MAX_OBJECTS = 1 << 17
-MAX_FACES = 1 << 13
-"""Objects and faces that a surface key of 31 bits can tell apart."""
+MAX_PARTS = 1 << 13
+"""Objects, and parts of their surfaces, that a surface key of 31 bits can tell apart."""
 
 HISTORY_LIMIT = 1023
 """Each count of a photon's history stops here: 10 bits apiece."""
 
 
 @wp.func
-def surface_key(prim: int, face: int, side: int):
-    """One integer for object, face and side: equal keys mean the same side of the same face."""
-    return (prim << 14) | (face << 1) | side
+def surface_key(prim: int, part: int, side: int):
+    """One integer for object, part and side: equal keys mean the same side of the same part."""
+    return (prim << 14) | (part << 1) | side
 
 
 @wp.func

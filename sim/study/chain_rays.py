@@ -1,8 +1,9 @@
 """Rays that follow one chain of refractions and reflections, to where it meets the receiver.
 
 Each advances by the same `interact` step as photons and camera paths. Where photons split at a
-surface, a chain takes one branch and carries its share of the flux, 1 − R or R with the mean R of
-s and p light: the contributions of all chains add up to what photons deposit.
+surface, a chain takes one branch and carries its share of the flux, 1 − R or R, as the light is
+polarised there: the contributions of all chains add up to what photons deposit. Light starts
+natural.
 """
 
 import functools
@@ -18,6 +19,8 @@ import warp as wp
 from sim.errors import SettingsError
 from sim.features import Features
 from sim.geometry.flat import intersect_plane, plane_coordinates
+from sim.optics.absorption import absorbed_fraction
+from sim.polarised_light import make_light
 from sim.scene_data import CompiledScene
 from sim.study.receiver_bins import ReceiverBins
 from sim.transport import EVENT_BOUNDARY, EVENT_PASS, make_transport
@@ -69,7 +72,7 @@ def make_chain_structs(precision: str, features: Features) -> SimpleNamespace:
         centre: vec3
         frame: mat33  # rows: u, v, normal
         reflects: wp.array(dtype=int)
-        length: int  # boundaries to cross; −1: as many as there are, all refracting
+        length: int  # surfaces to cross; −1: as many as there are, all refracting
         limit: int
 
     return SimpleNamespace(Chain=ChainData, transport=transport, real=real, vec3=vec3)
@@ -83,16 +86,20 @@ def make_trace_chain(precision: str, features: Features) -> Any:
     real, vec3, interact = structs.real, structs.vec3, transport.interact
     scene_type, ray_type, met_type = transport.Scene, transport.Ray, transport.Interaction
     media_indices = transport.media_indices
-    losses = features.absorption or features.finishes
+    losses = features.absorption or features.finishes or features.polarisers
+    mode = features.light_of("photons")
+    polarised = mode != "averaged"
+    carried = make_light(precision, mode, polarisers=features.polarisers)
+    natural, turn, judge, send = carried.natural, carried.turn, carried.judge, carried.send
 
     @wp.func
     def land(chain: chain_type, ray: ray_type, met: met_type):
-        """Whether the ray meets the receiver's plane before anything else, and where."""
+        """Whether the ray meets the receiver's plane before anything else, where, how far away."""
         local = ray.origin - chain.centre
         t = intersect_plane(local, ray.direction, chain.frame[2])
         free = met.prim < 0 or met.prim == chain.receiver or t < met.t
         u, v = plane_coordinates(local + ray.direction * t, chain.frame)
-        return t >= real(0.0) and free, u, v
+        return t >= real(0.0) and free, u, v, t
 
     @wp.kernel(module="unique", enable_backward=False)
     def follow_chain(
@@ -113,34 +120,50 @@ def make_trace_chain(precision: str, features: Features) -> Any:
         ray.prim2 = -1
         indices = media_indices(scene, wavelengths_nm[i])
         share = real(1.0)
+        if wp.static(polarised):
+            light, frame = natural(ray.direction)
         signature = wp.uint64(14695981039346656037)
         step = int(0)
         while step <= chain.limit:
             met = interact(scene, ray, indices)
             boundary = met.event == EVENT_BOUNDARY
-            if wp.static(losses):
-                share -= share * met.absorbed
-            if step == chain.length or (chain.length < 0 and not boundary):
-                landed, u, v = land(chain, ray, met)
+            passes = met.event == EVENT_PASS
+            if step == chain.length or (chain.length < 0 and not boundary and not passes):
+                landed, u, v, distance = land(chain, ray, met)
                 if landed:
+                    if wp.static(features.absorption):
+                        share -= share * absorbed_fraction(met.alpha, distance)
                     out_landings[i] = vec3(u, v, share)
                     out_signatures[i] = signature
                 break
-            if not boundary and met.event != EVENT_PASS:
+            if not boundary and not passes:
                 break
+            if wp.static(polarised):
+                if boundary:
+                    light, frame = turn(scene, met, ray.direction, light, frame)
+                    reflectance, lost = judge(met, light)
+                    met.reflectance = reflectance
+                    met.absorbed = lost
+            if wp.static(losses):
+                share -= share * met.absorbed
             reflects = int(0)
             if chain.length >= 0:
                 reflects = chain.reflects[step]
-            if met.event == EVENT_PASS:
-                step += 0
+            if passes:
+                if reflects == 1:
+                    break
             elif reflects == 1 or met.opaque == 1:
                 share *= met.reflectance
                 ray.direction = met.reflected
+                if wp.static(polarised):
+                    light = send(met, light, 0)
             elif met.total == 1:
                 break
             else:
                 share *= real(1.0) - met.reflectance
                 ray.direction = met.refracted
+                if wp.static(polarised):
+                    light = send(met, light, 1)
             ray.origin = met.point
             ray.prim = met.prim
             ray.face = met.face
@@ -148,7 +171,7 @@ def make_trace_chain(precision: str, features: Features) -> Any:
             ray.face2 = met.face2
             # FNV-1a over the faces met (Fowler, Noll & Vo): 64 bits tell sequences apart.
             signature = (signature ^ wp.uint64(met.prim + 1)) * wp.uint64(1099511628211)
-            signature = (signature ^ wp.uint64(met.face + 1)) * wp.uint64(1099511628211)
+            signature = (signature ^ wp.uint64(met.part + 1)) * wp.uint64(1099511628211)
             step += 1
 
     return follow_chain
@@ -166,8 +189,9 @@ def make_chain(
     Args:
         compiled: the scene, in float64.
         receiver: where the chain ends.
-        branches: "refract" or "reflect" at each surface on the way, and no surface more; an
-            empty sequence is direct light. None refracts at every surface there is.
+        branches: "refract" or "reflect" at each surface on the way, and no surface more; one that
+            is hidden inside a solid counts as refracting, as with photons; an empty sequence is
+            direct light. None refracts at every surface there is.
         max_interactions: surfaces to follow a ray through where `branches` is None.
 
     Raises:

@@ -88,7 +88,10 @@ def find_chain(
     through &= np.isin(photons["object"], rectangles)
     edges = scene.film.edges_nm
     names = [one.name for one in scene.emitters if one.emission().band_flux(edges).any()]
+    polarised = {one.name for one in scene.emitters if one.polarisation is not None}
     for row, name in enumerate(names):
+        if name in polarised:
+            continue  # the mesh's light starts natural
         lit = through & (photons["emitter"] == row)
         if np.count_nonzero(lit) < SHINING * len(batch):
             continue

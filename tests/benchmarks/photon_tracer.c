@@ -47,7 +47,7 @@ typedef struct { Vec centre; double radius; int prim; } Sphere;
 typedef struct { Vec centre, u, v, normal; double half_u, half_v, radius2; int prim; } Flat;
 typedef struct { Vec normal; double offset; } Plane;
 typedef struct { Vec centre; int first, count, prim; } Polyhedron;
-typedef struct { int material, outside, inside, dispersive; } Body;
+typedef struct { int material, inside, dispersive; } Body; /* outside is medium 0 */
 typedef struct { int formula; double c[8]; } Medium;
 typedef struct {
     Vec centre, u, v, axis;
@@ -548,8 +548,8 @@ static void follow(const Scene *scene, const Stream *stream, Ray ray, Hit hit, d
                 books->absorbed += flux;
             } else {
                 Vec normal = side ? scale(hit.normal, -1.0) : hit.normal, reflected, refracted;
-                double eta = side ? indices[body->inside] / indices[body->outside]
-                                  : indices[body->outside] / indices[body->inside];
+                double eta = side ? indices[body->inside] / indices[0]
+                                  : indices[0] / indices[body->inside];
                 double r = cross_boundary(ray.direction, normal, eta, &reflected, &refracted);
                 double side_flux = flux * r;
                 history |= body->dispersive << 30;
@@ -671,8 +671,8 @@ static void read_scene(const char *path, Scene *scene) {
     READ(polyhedra, polyhedron_count, 6,
          a->centre = take_vec(&p); a->first = take_int(&p); a->count = take_int(&p);
          a->prim = take_int(&p););
-    READ(bodies, body_count, 4,
-         a->material = take_int(&p); a->outside = take_int(&p); a->inside = take_int(&p);
+    READ(bodies, body_count, 3,
+         a->material = take_int(&p); a->inside = take_int(&p);
          a->dispersive = take_int(&p););
     READ(media, media_count, 9,
          a->formula = take_int(&p); for (int k = 0; k < 8; k++) a->c[k] = take(&p););

@@ -83,10 +83,7 @@ def sections(compiled: CompiledScene, lamps: Lamps) -> list[FloatArray]:
         ),
         columns(data.planes.numpy(), planes, "normal", "offset"),
         columns(polyhedra, data.polyhedron_count, "centre", "first", "count", "prim"),
-        columns(
-            data.bodies.numpy(), bodies,
-            "material", "medium_outside", "medium_inside", "dispersive",
-        ),
+        columns(data.bodies.numpy(), bodies, "material", "medium_inside", "dispersive"),
         np.hstack([columns(data.media.numpy(), media, "formula"), data.coefficients.numpy()]),
         shine.cdf.numpy().reshape(-1, 1),
         columns(
@@ -197,9 +194,12 @@ def summary(ratios: Sequence[float]) -> str:
 
 
 def can_follow(compiled: CompiledScene) -> bool:
-    """Whether `photon_tracer.c` can trace the scene: no lenses, tables or conversions of air."""
+    """Whether `photon_tracer.c` can trace the scene: the bare features alone."""
     features = compiled.features
-    return not (features.lenses or features.tabulated or features.air_conversion)
+    return not (
+        features.lenses or features.tabulated or features.air_conversion or features.interfaces
+        or features.absorption or features.finishes
+    )
 
 
 def record(row: Sequence[object]) -> None:

@@ -54,6 +54,22 @@ thickness = 1
 aperture = 4
 first = { radius = 5, conic = -0.5 }
 second = { curvature = -0.25 }
+[[objects]]
+material = { type = "absorber" }
+[objects.shape]
+type = "heightfield"
+position = [1, 2, 3]
+size = [4, 5]
+depth = 3
+waves = [{ amplitude = 1, period = 2, direction_deg = 30 }]
+cells = [2, 2]
+[[objects]]
+material = { type = "absorber" }
+[objects.shape]
+type = "heightfield"
+position = [1, 2, 3]
+size = [4, 5]
+heights = [[0, 1], [2, 3]]
 [[emitters]]
 type = "beam"
 flux = 2
@@ -97,6 +113,9 @@ size = [4, 5]
 
 LENGTHS = {"position", "look_at", "radius", "size", "base", "length", "thickness", "aperture"}
 LENGTHS_OF = {"prism": {"height"}, "slit": {"width", "height"}, "polyhedron": {"vertices"}}
+LENGTHS |= {"amplitude", "period", "depth", "heights"}
+IN_FILES = {"file", "unit"}
+"""Lengths that stand in files of their own, and the length of these files' unit."""
 
 
 def leaves(value: Any, path: str = "", kind: str = "", key: str = "") -> Iterator[tuple[Any, ...]]:
@@ -133,7 +152,7 @@ def test_every_field_called_a_length_is_among_the_scaled_ones() -> None:
         for key, field in model["properties"].items()
         if "(length" in field["description"]
     }
-    assert described == LENGTHS | set().union(*LENGTHS_OF.values())
+    assert described == LENGTHS | IN_FILES | set().union(*LENGTHS_OF.values())
 
 
 def test_millimetres_become_the_nearest_metres() -> None:

@@ -66,7 +66,9 @@ def test_unions_are_told_apart_by_their_type() -> None:
     assert set(shape["discriminator"]["mapping"]) == {
         "box",
         "disk",
+        "heightfield",
         "lens",
+        "mesh",
         "plane",
         "polyhedron",
         "prism",

@@ -105,7 +105,7 @@ def test_a_missing_type_lists_all(problems: Load) -> None:
         (
             "[[objects]]\nshape = 3\nmaterial = 'glass'",
             "objects[0].shape",
-            'must be a table with a key "type", one of: box, disk, lens, ',
+            'must be a table with a key "type", one of: box, disk, heightfield, ',
         ),
         (
             SPHERE.format(extra="", medium="[1]"),

@@ -26,7 +26,7 @@ NOTHING = Features(
     spheres=False, flats=False, polyhedra=False, lenses=False, sellmeier=False, cauchy=False,
     tabulated=False, air_conversion=False, boundaries=False, reflected_branches=False,
     dispersion=False, beams=False, sphere_lamps=False, rectangle_lamps=False, interfaces=False,
-    absorption=False, finishes=False,
+    absorption=False, finishes=False, meshes=False,
 )  # fmt: skip
 AMBIENT = Medium("reference", Cauchy((1.0,)), (0.0, 1e9), "", "air")
 TABLE = Medium("table", Tabulated((400.0, 700.0), (1.5, 1.4)), (400.0, 700.0), "", "air")
@@ -53,6 +53,9 @@ SHAPES = {
             position=ORIGIN,
             vertices=((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
         ),
+    ],
+    "meshes": [
+        scenes.HeightField(position=ORIGIN, size=(1.0, 1.0), heights=((0.0, 0.0), (0.0, 0.0))),
     ],
     "lenses": [
         scenes.Lens(
@@ -207,8 +210,8 @@ def test_a_new_feature_takes_part_in_everything(registering):
 
 
 def test_what_is_not_known_is_on(registering):
-    registering(dummy("meshes", None))
-    one = decision(judge(scene_of(BALL)), "meshes")
+    registering(dummy("ripples", None))
+    one = decision(judge(scene_of(BALL)), "ripples")
     assert one.on
     assert one.reason == "not known to be useless"
 

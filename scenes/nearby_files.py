@@ -1,0 +1,52 @@
+"""Files that a scene names: found beside the scene's own file, and nowhere else.
+
+A scene file from somebody else must not read what lies elsewhere on the disk, so what it names is
+relative to its own folder and stays inside it. A model built in Python is the program's own word:
+there a path may be any, relative to the current folder.
+"""
+
+from pathlib import Path
+
+from pydantic import ValidationInfo
+
+from scenes.errors import Problem, refusal, shown
+from scenes.fields import folder_of
+
+__all__ = ["nearby_file"]
+
+
+def nearby_file(name: str, info: ValidationInfo, *, field: str = "file") -> Path:
+    """The file that a field names.
+
+    Args:
+        name: as written.
+        info: of the validation, which knows the scene file's folder.
+        field: path of the field, for the problem.
+
+    Raises:
+        PydanticCustomError: there is no such file, or it is not in the scene's folder.
+    """
+    folder = folder_of(info)
+    try:
+        if folder is None:
+            path = Path(name)
+        else:
+            path = _inside(folder, name, field)
+        if path.is_file():
+            return path.resolve()
+    except (OSError, ValueError) as error:  # no path can look like this
+        raise refusal(Problem(field, f"{shown(name)} cannot be a path: {error}", name)) from None
+    where = f"in {folder}" if folder is not None else "there"
+    message = f"there is no file {shown(name)} {where}"
+    raise refusal(Problem(field, message, name, "the path of a file"))
+
+
+def _inside(folder: Path, name: str, field: str) -> Path:
+    """`name` below `folder`, links and dots resolved."""
+    root = folder.resolve()
+    path = (root / name).resolve()
+    if Path(name).is_absolute() or not path.is_relative_to(root):
+        allowed = "a path relative to the scene's folder, and inside it"
+        message = f"must be {allowed}; is {shown(name)}"
+        raise refusal(Problem(field, message, name, allowed))
+    return path

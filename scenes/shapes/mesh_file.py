@@ -1,0 +1,134 @@
+"""Triangles from a file: PLY, OBJ, STL or GLB, read by trimesh."""
+
+import warnings
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenes.shapes.surface import Surface
+
+__all__ = ["MAX_TRIANGLES", "MESH_FORMATS", "NormalsChoice", "read_surface"]
+
+MESH_FORMATS = ("ply", "obj", "stl", "glb")
+"""Endings of files that can be read."""
+
+MAX_TRIANGLES = 1 << 21
+
+_MAX_BYTES = 512 * 1024 * 1024
+
+NormalsChoice = Literal["file", "smooth", "flat"]
+
+
+def read_surface(path: Path, unit: float, normals: NormalsChoice, *, turned: bool) -> Surface:
+    """The triangles of a file.
+
+    Args:
+        path: of an existing file.
+        unit: length of the file's unit [m].
+        normals: "file": as the file has them, flat facets where it has none; "smooth": means over
+            the triangles around each corner, sharp edges aside; "flat": facets.
+        turned: the file's triangles run clockwise seen from outside.
+
+    Raises:
+        ValueError: it is no file of triangles that can be used; says why.
+    """
+    status = path.stat()
+    if status.st_size > _MAX_BYTES:
+        raise ValueError(f"it is too large; allowed: at most {_MAX_BYTES // 1024**2} MB")
+    return _read(path, (status.st_mtime_ns, status.st_size), unit, normals, turned)
+
+
+@lru_cache(maxsize=32)
+def _read(
+    path: Path, _version: tuple[int, int], unit: float, normals: NormalsChoice, turned: bool
+) -> Surface:
+    kind = path.suffix.lower().removeprefix(".")
+    if kind not in MESH_FORMATS:
+        raise ValueError(f"its name must end in one of: {', '.join(MESH_FORMATS)}")
+    corners, corner_normals = _corners(path.read_bytes(), kind)
+    if not len(corners):
+        raise ValueError("it holds no triangles")
+    if len(corners) > MAX_TRIANGLES:
+        raise ValueError(f"it holds {len(corners)} triangles; allowed: at most {MAX_TRIANGLES}")
+    if not np.isfinite(corners).all():
+        raise ValueError("it holds coordinates that are not finite numbers")
+    if normals != "file":
+        corner_normals = None
+    if turned:
+        corners = corners[:, ::-1]
+        corner_normals = None if corner_normals is None else corner_normals[:, ::-1]
+    surface = _joined(corners * unit, corner_normals)
+    return surface.smoothed() if normals == "smooth" else surface
+
+
+def _corners(
+    content: bytes, kind: str
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    """(m, 3, 3) corners of all the triangles of a file's content, and their normals if it has any.
+
+    Raises:
+        ValueError: the content is not of this kind.
+    """
+    import io
+
+    import trimesh
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            scene = trimesh.load_scene(
+                io.BytesIO(content), file_type=kind, process=False, skip_materials=True
+            )
+            parts = [_part(scene, node) for node in scene.graph.nodes_geometry]
+    except Exception as error:  # a damaged file ends in any of Python's exceptions
+        raise ValueError(f"it is not a valid {kind.upper()} file: {error}") from None
+    parts = [part for part in parts if part is not None]
+    if not parts:
+        return np.zeros((0, 3, 3)), None
+    corners = np.concatenate([corners for corners, _ in parts])
+    if any(normals is None for _, normals in parts):
+        return corners, None
+    return corners, np.concatenate([normals for _, normals in parts])
+
+
+def _part(scene: Any, node: str) -> Any:
+    """Corners and normals (None: the file has none) of one of a file's meshes, where it is put."""
+    place, name = scene.graph[node]
+    mesh = scene.geometry[name]
+    if not hasattr(mesh, "faces"):
+        return None  # points or lines
+    linear = place[:3, :3]
+    faces = np.asarray(mesh.faces, dtype=np.int64)
+    if np.linalg.det(linear) < 0.0:
+        faces = faces[:, ::-1]  # mirrored
+    corners = np.asarray(mesh.vertices, dtype=np.float64)[faces] @ linear.T + place[:3, 3]
+    # Asked for its `vertex_normals`, a mesh without any would make some up.
+    known = mesh._cache.cache.get("vertex_normals")
+    if known is None or len(known) != len(mesh.vertices):
+        return corners, None
+    normals = np.asarray(known, dtype=np.float64)[faces] @ np.linalg.inv(linear)
+    lengths = np.linalg.norm(normals, axis=2, keepdims=True)
+    if not (np.isfinite(lengths).all() and (lengths > 0.0).all()):
+        return corners, None
+    return corners, normals / lengths
+
+
+def _joined(corners: NDArray[np.float64], normals: NDArray[np.float64] | None) -> Surface:
+    """The surface: corners at the same point are one vertex, triangles of fewer than three gone."""
+    points = corners.reshape(-1, 3) + 0.0  # -0.0 and 0.0 are the same place
+    vertices, rows = np.unique(points, axis=0, return_inverse=True)
+    triangles = rows.reshape(-1, 3)
+    a, b, c = triangles.T
+    whole = (a != b) & (b != c) & (c != a)
+    if not whole.any():
+        raise ValueError("it holds no triangle of three different corners")
+    flat = Surface(vertices, triangles[whole])
+    if normals is None:
+        return flat
+    # Outside is where the winding says; a normal only says how the surface bends there.
+    heights = np.einsum("mij,mj->mi", normals[whole], flat.facet_normals)
+    outward = normals[whole] * np.where(heights < 0.0, -1.0, 1.0)[:, :, None]
+    return Surface(flat.vertices, flat.triangles, outward)
