@@ -13,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from sim.commands import explain, glass, info, render, scenes, schema, study, trace
+from sim.commands import explain, glass, info, render, scenes, schema, spectrum, study, trace
 from sim.native_output import end_silence
 from sim.version import VERSION
 
@@ -25,6 +25,7 @@ _COMMANDS = {
     "explain": explain,
     "scenes": scenes,
     "glass": glass,
+    "spectrum": spectrum,
     "info": info,
     "schema": schema,
     "study": study,

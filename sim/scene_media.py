@@ -1,12 +1,15 @@
 """What a scene is made of: which media there are, where, and on which footing their indices are."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import scenes
 from scenes.media import REFERENCE_MEDIA
-from spectra import Medium
+from spectra import Medium, air_index
+from spectra.arrays import FloatArray
+from spectra.dispersion import require_in_range
 
-__all__ = ["Finish", "SceneMedia", "collect_media"]
+__all__ = ["Finish", "SceneMedia", "collect_media", "require_known"]
 
 
 Finish = scenes.Mirror | scenes.Metal | scenes.Lambertian
@@ -97,3 +100,29 @@ def _ambient_medium(scene: scenes.Scene) -> Medium:
     if ambient in REFERENCE_MEDIA:
         return REFERENCE_MEDIA[ambient]
     return replace(REFERENCE_MEDIA["air"], name=ambient)
+
+
+def require_known(
+    scene: scenes.Scene, media: Sequence[Medium], wavelengths_nm: FloatArray, *, has_air: bool
+) -> None:
+    """Make sure that everything a scene is made of is known at some wavelengths.
+
+    Args:
+        scene: the scene, for its metals.
+        media: its media, the ambient one first.
+        wavelengths_nm: (n,) the wavelengths [nm].
+        has_air: whether indices are converted by that of air.
+
+    Raises:
+        WavelengthOutOfRange: an index or an absorption coefficient is not known at one of them.
+    """
+    for medium in reversed(media):  # those of the objects first
+        medium.eta(wavelengths_nm)
+        if medium.absorption is not None:
+            known_nm, what = medium.absorption.wavelength_range_nm, "absorption coefficient"
+            require_in_range(wavelengths_nm, medium.name, known_nm, quantity=what)
+    for item in scene.objects:
+        if isinstance(item.material, scenes.Metal):
+            item.material.resolved().eta(wavelengths_nm)
+    if has_air:
+        air_index(wavelengths_nm)

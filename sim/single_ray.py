@@ -16,8 +16,8 @@ from sim.device import start_device
 from sim.errors import SettingsError
 from sim.ray_path import RayPath
 from sim.scene_data import CompiledScene, compile_scene
+from sim.scene_media import require_known
 from sim.single_ray_kernel import EVENT_NAMES, REFLECT, REFRACT, make_trace_single
-from spectra import air_index
 
 __all__ = ["trace_compiled_rays", "trace_ray"]
 
@@ -96,7 +96,8 @@ def trace_compiled_rays(
     if max_interactions < 1:
         raise SettingsError("max_interactions", max_interactions, "a whole number from 1")
     reflects = _reflects(branches)
-    _require_indices(compiled, wavelengths_nm)
+    has_air = compiled.features.air_conversion
+    require_known(compiled.scene, compiled.media, wavelengths_nm, has_air=has_air)
     light, ups = _start(polarisation, directions)
     structs, device, rays = compiled.structs, compiled.device, len(origins)
     size = (rays, max_interactions)
@@ -185,14 +186,6 @@ class _Record:
         half_chord = np.sqrt(max(reach * reach - closest2, 0.0))
         exit_point: FloatArray = start + max(half_chord - along, 0.5 * reach) * direction
         return exit_point
-
-
-def _require_indices(compiled: CompiledScene, wavelengths_nm: FloatArray) -> None:
-    """Raise `spectra.WavelengthOutOfRange` where some medium of the scene has no index."""
-    for medium in reversed(compiled.media):  # those of the objects first
-        medium.eta(wavelengths_nm)
-    if compiled.features.air_conversion:
-        air_index(wavelengths_nm)
 
 
 def _start(

@@ -9,6 +9,13 @@ Conventions: wavelengths are nanometres (``wavelength_nm``) in air or in vacuum 
 
 from spectra.absorption import Absorption
 from spectra.absorption_tables import absorbing_media, published_absorption
+from spectra.colorimetry import (
+    ColourTemperature,
+    chromaticity,
+    colour_temperature,
+    luminous_efficacy,
+    tristimulus,
+)
 from spectra.conductors import Conductor, conductor, conductors
 from spectra.dispersion import Cauchy, Dispersion, Sellmeier, Tabulated, air_index
 from spectra.emission import EmissionSpectrum
@@ -46,6 +53,7 @@ __all__ = [
     "VISIBLE_RANGE_NM",
     "Absorption",
     "Cauchy",
+    "ColourTemperature",
     "Conductor",
     "Dispersion",
     "EmissionSpectrum",
@@ -64,7 +72,9 @@ __all__ = [
     "absorbing_media",
     "air_index",
     "blackbody",
+    "chromaticity",
     "cie_illuminant",
+    "colour_temperature",
     "conductor",
     "conductors",
     "encode_srgb",
@@ -73,12 +83,14 @@ __all__ = [
     "laser",
     "line_spectrum",
     "luminance",
+    "luminous_efficacy",
     "map_to_gamut",
     "observer",
     "published_absorption",
     "spectrum",
     "spectrum_names",
     "table",
+    "tristimulus",
     "wavelength_to_srgb",
     "xyz_to_linear_srgb",
 ]

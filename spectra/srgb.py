@@ -5,7 +5,7 @@ Reference:
     Part 2-1: Default RGB colour space - sRGB".
 """
 
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ from spectra.observer import observer
 from spectra.piecewise import interpolate
 
 __all__ = [
+    "PRIMARIES_XY",
     "encode_srgb",
     "luminance",
     "map_to_gamut",
@@ -33,6 +34,9 @@ _LINEAR_SRGB_TO_XYZ = read_only(
     ]
 )
 _XYZ_TO_LINEAR_SRGB = read_only(np.linalg.inv(_LINEAR_SRGB_TO_XYZ))
+
+PRIMARIES_XY: Final = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))
+"""Chromaticities x, y of red, green and blue (IEC 61966-2-1, table 1)."""
 
 # How wavelength_to_srgb dims towards the ends of the visible, so that a drawing still shows there
 # is a ray: full from 420 to 680 nm, down to a third at and beyond the ends.

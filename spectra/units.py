@@ -10,6 +10,8 @@ References:
     Hecht (2017), Optics, 5th edition, table 6.1: Fraunhofer lines.
 """
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Final
 
 __all__ = [
@@ -17,6 +19,7 @@ __all__ = [
     "FRAUNHOFER_C_NM",
     "FRAUNHOFER_D_NM",
     "FRAUNHOFER_F_NM",
+    "FRAUNHOFER_LINES_NM",
     "LUMINOUS_EFFICACY_LM_W",
     "M_PER_NM",
     "NM_PER_UM",
@@ -34,6 +37,11 @@ LUMINOUS_EFFICACY_LM_W: Final = 683.0
 FRAUNHOFER_F_NM: Final = 486.1327
 FRAUNHOFER_D_NM: Final = 587.5618
 FRAUNHOFER_C_NM: Final = 656.2725
+
+FRAUNHOFER_LINES_NM: Final[Mapping[str, float]] = MappingProxyType(
+    {"F": FRAUNHOFER_F_NM, "d": FRAUNHOFER_D_NM, "C": FRAUNHOFER_C_NM}
+)
+"""The lines by which glasses are compared."""
 
 NM_PER_UM: Final = 1000.0
 M_PER_NM: Final = 1e-9

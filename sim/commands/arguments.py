@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-__all__ = ["count", "duration", "exr_file", "figure_file", "fraction", "png_file"]
+__all__ = ["count", "duration", "exr_file", "figure_file", "fraction", "length", "png_file"]
+
+_LONGEST_M = 1000.0
 
 
 def count(text: str) -> int:
@@ -36,6 +38,19 @@ def duration(text: str) -> float:
         if text.endswith(unit):
             return float(text.removesuffix(unit)) * seconds
     return float(text)
+
+
+def length(text: str) -> float:
+    """A length in metres, above 0 and at most a kilometre: ``0.01``, ``10mm``, ``1cm``, ``2m``."""
+    metres = None
+    for unit, per_metre in (("mm", 1000.0), ("cm", 100.0), ("m", 1.0)):
+        if text.endswith(unit):
+            metres = float(text.removesuffix(unit)) / per_metre
+            break
+    metres = float(text) if metres is None else metres
+    if not 0.0 < metres <= _LONGEST_M:
+        raise argparse.ArgumentTypeError(f"{text!r} is not above 0 and at most {_LONGEST_M:g} m")
+    return metres
 
 
 def exr_file(path: str) -> Path:

@@ -6,12 +6,9 @@ import os
 import subprocess
 import sys
 
-import numpy as np
 import pytest
-from PIL import Image
 
 import scenes
-import spectra
 from sim.cli import main
 from sim.version import VERSION
 
@@ -31,7 +28,7 @@ def fails(capfd, arguments, *parts):
 def test_help_lists_every_command(capfd):
     assert main(["--help"]) == 0
     shown = capfd.readouterr().out
-    for command in ("render", "trace", "explain", "scenes", "glass", "info", "schema"):
+    for command in ("render", "trace", "explain", "scenes", "glass", "spectrum", "info", "schema"):
         assert f"\n    {command} " in shown
 
 
@@ -119,27 +116,6 @@ def test_scenes_lists_the_gallery(capfd):
 def test_schema_is_json(capfd):
     assert main(["schema"]) == 0
     assert json.loads(capfd.readouterr().out) == scenes.schema()
-
-
-@pytest.mark.parametrize("name", spectra.glasses())
-def test_glass_tells_what_is_known(capfd, name):
-    assert main(["glass", name]) == 0
-    shown = capfd.readouterr().out
-    medium = spectra.glass(name)
-    for text in (
-        name, medium.source, medium.relative_to, f"{medium.n_d:.6f}", f"{medium.abbe_number:.2f}"
-    ):  # fmt: skip
-        assert text in shown
-
-
-def test_glass_plots(capfd, tmp_path):
-    assert main(["glass", "SF11", "-o", str(tmp_path / "sf11.png")]) == 0
-    with Image.open(tmp_path / "sf11.png") as image:
-        assert np.asarray(image).std() > 0
-
-
-def test_an_unknown_glass_is_told_with_the_nearest(capfd):
-    fails(capfd, ["glass", "BK9"], "unknown glass 'BK9'", "N-BK7")
 
 
 def test_info_tells_what_a_file_holds(capfd, tmp_path, synthetic_picture):
