@@ -26,7 +26,7 @@ from sim.image.survey import survey_view
 from sim.launch import load_kernels
 from sim.photons.lamps import Lamps, compile_lamps
 from sim.photons.photon_batch import PhotonBatch
-from sim.photons.photon_map import PhotonMap, build_photon_map
+from sim.photons.photon_maps import PhotonMaps, build_photon_maps
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
@@ -141,9 +141,11 @@ class _Bench:
         # From the pixels of the whole film: as many photons as in a rendering lie in a disc.
         radius = self.settings.radius or scale * gather_radius(survey)
         receivers = compile_receivers(compiled, lamps, edges_nm)
-        photon_map = build_photon_map(compiled, batch, receivers, radius, threads=1)
+        maps = build_photon_maps(
+            compiled, batch, receivers, radius, seed=0, pass_index=0, threads=1
+        )
         direct = self.settings.direct_light == "lamps"
-        lights = compose_lights(compiled.precision, photon_map, receivers, lamps, direct=direct)
+        lights = compose_lights(compiled.precision, maps, receivers, lamps, direct=direct)
         film = create_film(
             small.height, small.width, edges_nm, len(lamps.spectra), self.device, passes=1
         )
@@ -151,7 +153,7 @@ class _Bench:
         def exposer(build: Build) -> Callable[[], None]:
             built, _ = self._compiled(build)
 
-            def work(_alive: PhotonMap = photon_map) -> None:
+            def work(_alive: PhotonMaps = maps) -> None:
                 expose(film, built, camera, lights, seed=0, pass_index=0, threads=1)
 
             return work
@@ -173,4 +175,5 @@ class _Bench:
             compiled, lamps, seed=0, pass_index=0, threads=1,
             max_interactions=self.settings.max_interactions,
             store_direct=self.settings.direct_light == "photons",
+            bounces=self.settings.bounces,
         )

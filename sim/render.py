@@ -36,30 +36,19 @@ from sim.launch import load_kernels
 from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
-from sim.photons.photon_batch import PhotonBatch
-from sim.photons.photon_map import (
-    INDIRECT_KEPT,
-    INDIRECT_WIDTH,
-    PhotonMap,
-    build_photon_map,
-    make_collect,
-    make_reorder,
-)
+from sim.photons.photon_map import make_collect, make_reorder
+from sim.photons.photon_maps import PhotonMaps, build_photon_maps
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
-from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
 
 __all__ = ["compile_lamps_for", "gather_radius", "kernels_of", "radius_shrinkage", "render"]
-
-_THINNING_KEY = 0x7411
-"""Apart from every stream's number."""
 
 FOOTPRINTS_A_RADIUS = 2.0
 """The first pass gathers over a disc this many pixel widths in radius."""
@@ -174,14 +163,6 @@ def gather_radius(survey: Survey) -> float:
 
 
 @dataclass(frozen=True)
-class _Maps:
-    """One pass's photons: those that no diffuse surface has reflected, and those that one has."""
-
-    straight: PhotonMap
-    bounced: PhotonMap | None
-
-
-@dataclass(frozen=True)
 class _Studio:
     """All that the passes of one run share."""
 
@@ -193,7 +174,7 @@ class _Studio:
     radius: float
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[tuple[_Maps, EnergyBooks], None, None]:
+    def photon_maps(self) -> Generator[tuple[PhotonMaps, EnergyBooks], None, None]:
         """The photon map of each pass, in order, and its energy books.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
@@ -213,8 +194,8 @@ class _Studio:
 
     def _photon_map(
         self, pass_index: int, stop: threading.Event
-    ) -> tuple[_Maps, EnergyBooks]:
-        """Emit and trace the photons of one pass, and map them, one map for those that bounced."""
+    ) -> tuple[PhotonMaps, EnergyBooks]:
+        """Emit and trace the photons of one pass, and map them."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
                 self.compiled,
@@ -230,32 +211,21 @@ class _Studio:
             )
         radius = self.radius * radius_shrinkage(pass_index, self.plan.alpha)
         with self.watch.timing("build photon map"):
-            if not self.compiled.features.interreflection:
-                return _Maps(self._sorted(batch, radius, stop), None), batch.books
-            first = fold_key(self.plan.seed, pass_index, _THINNING_KEY) % INDIRECT_KEPT
-            straight, bounced = batch.parted(every=INDIRECT_KEPT, first=first)
-            maps = _Maps(
-                self._sorted(straight, radius, stop),
-                self._sorted(bounced, INDIRECT_WIDTH * radius, stop),
+            maps = build_photon_maps(
+                self.compiled, batch, self.receivers, radius, seed=self.plan.seed,
+                pass_index=pass_index, threads=self.plan.threads, stop=stop,
             )
         return maps, batch.books
 
-    def _sorted(self, batch: PhotonBatch, radius: float, stop: threading.Event) -> PhotonMap:
-        """The map of a batch."""
-        return build_photon_map(
-            self.compiled, batch, self.receivers, radius, threads=self.plan.threads, stop=stop
-        )
-
-    def expose(self, film: Film, maps: _Maps, pass_index: int) -> None:
+    def expose(self, film: Film, maps: PhotonMaps, pass_index: int) -> None:
         """Expose the film to one pass."""
         self.watch.pass_index = pass_index
         lights = compose_lights(
             self.plan.precision,
-            maps.straight,
+            maps,
             self.receivers,
             self.lamps,
             direct=self.plan.direct_light == "lamps",
-            bounced=maps.bounced,
         )
         expose(
             film,

@@ -7,7 +7,8 @@ import warp as wp
 
 from sim.photons.lamp_structs import make_lamp_structs
 from sim.photons.lamps import Lamps
-from sim.photons.photon_map import PhotonMap, make_map_structs
+from sim.photons.photon_map import make_map_structs
+from sim.photons.photon_maps import PhotonMaps
 from sim.photons.receivers import make_receiver_structs
 from sim.precision import precision_types
 
@@ -63,27 +64,25 @@ def make_lights_struct(precision: str) -> Any:
 
 def compose_lights(
     precision: str,
-    photon_map: PhotonMap,
+    maps: PhotonMaps,
     receivers: Any,
     lamps: Lamps,
     *,
     direct: bool,
-    bounced: PhotonMap | None = None,
 ) -> Any:
     """The device-side Lights struct of one pass.
 
     Args:
         precision: "float32" or "float64".
-        photon_map: the pass's photons.
+        maps: the pass's photons.
         receivers: the device-side Receivers struct.
         lamps: the scene's lamps.
         direct: whether to add what comes straight from the lamps: the map must not hold it.
-        bounced: the photons that a diffuse surface has reflected, if kernels know of them.
     """
     lights = make_lights_struct(precision)()
-    lights.photons = photon_map.data
-    lights.bounced = photon_map.data if bounced is None else bounced.data
-    lights.interreflection = int(bounced is not None)
+    lights.photons = maps.straight.data
+    lights.bounced = (maps.bounced or maps.straight).data
+    lights.interreflection = int(maps.bounced is not None)
     lights.receivers = receivers
     lights.lamps = lamps.data
     lights.direct = int(direct)

@@ -25,7 +25,7 @@ import scenes
 from sim.photons.aiming import Aim, Guide, View, cells_to_distribution
 from sim.photons.lamp_structs import AIM_AREA, AIM_BASE, AIM_CELLS, AIM_CONE, BEAM
 from sim.photons.lamps import Lamps
-from sim.photons.photon_map import INDIRECT_WIDTH
+from sim.photons.photon_maps import INDIRECT_WIDTH
 from sim.photons.pilot import Pilot, Shots
 from sim.scene_data import CompiledScene
 

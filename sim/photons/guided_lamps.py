@@ -29,8 +29,8 @@ def compile_guided_lamps(
     view: View,
     seed: int,
     max_interactions: int,
-    bounces: int,
     threads: int,
+    bounces: int = 0,
 ) -> Lamps:
     """Lamps for a picture whose photons are those that have met glass.
 
@@ -43,8 +43,8 @@ def compile_guided_lamps(
         view: what the camera sees.
         seed: the run's seed.
         max_interactions: surfaces that one photon and all its branches may meet.
-        bounces: off diffuse surfaces, at most; without any, photons that miss glass are wasted.
         threads: CPU threads.
+        bounces: off diffuse surfaces, at most; without any, photons that miss glass are wasted.
 
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.

@@ -27,8 +27,6 @@ from sim.precision import precision_types
 from sim.scene_data import CompiledScene
 
 __all__ = [
-    "INDIRECT_KEPT",
-    "INDIRECT_WIDTH",
     "PhotonMap",
     "build_photon_map",
     "make_collect",
@@ -45,14 +43,6 @@ looks into; one for all bands costs the photons it passes over: this is between 
 DEAL_BITS = wp.constant(5)
 """Undispersed photons are dealt in packs of 2⁵. Every eighth point of a Sobol sequence lies in one
 eighth of the square; a pack lies all over it, and so do the packs of a deal."""
-
-INDIRECT_WIDTH = 4.0
-"""Gather radius of light that a diffuse surface has reflected, in gather radii of other light: it
-changes less from place to place, and over so much wider a disc has a sixteenth of the noise."""
-
-INDIRECT_KEPT = 4
-"""One photon of how many is kept of those that diffuse surfaces have reflected: they lie all
-over, and each camera path gathers from a wide disc, so that their number is its cost."""
 
 _MAX_CELLS_A_SIDE = 1024
 _MAX_CELLS = 1 << 23

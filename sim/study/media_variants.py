@@ -17,7 +17,7 @@ from scenes.media import DescribedMedium
 from spectra import Medium
 from spectra.units import NM_PER_UM
 
-__all__ = ["TABLE_STEP_NM", "with_cauchy_media", "with_tabulated_media"]
+__all__ = ["TABLE_STEP_NM", "with_cauchy_media", "with_tabulated_media", "without_absorption"]
 
 TABLE_STEP_NM = 20.0
 """Between the knots of a table: catalogues of glass print about that many."""
@@ -58,6 +58,23 @@ def with_tabulated_media(scene: scenes.Scene) -> scenes.Scene:
         )
 
     return _rewrite(scene, tabulate)
+
+
+def without_absorption(scene: scenes.Scene) -> scenes.Scene:
+    """The scene with every object's medium clear; the ambient one stays as it is."""
+
+    def cleared(item: scenes.SceneObject) -> scenes.SceneObject:
+        material = item.material
+        if not isinstance(material, scenes.Dielectric) or material.resolved().absorption is None:
+            return item
+        medium = material.medium
+        if isinstance(medium, DescribedMedium):
+            medium = medium.model_copy(update={"absorption": None})
+        clear = material.model_copy(update={"medium": medium, "absorption": None})
+        return item.model_copy(update={"material": clear})
+
+    objects = tuple(map(cleared, scene.objects))
+    return scene if objects == scene.objects else scene.model_copy(update={"objects": objects})
 
 
 def _rewrite(scene: scenes.Scene, describe: _Describe) -> scenes.Scene:

@@ -7,7 +7,11 @@ from collections.abc import Mapping
 
 import scenes
 from sim.study.axes import Axis, register_axis
-from sim.study.media_variants import with_cauchy_media, with_tabulated_media
+from sim.study.media_variants import (
+    with_cauchy_media,
+    with_tabulated_media,
+    without_absorption,
+)
 from sim.study.setup import RESULTS, Setup
 
 __all__ = ["PLAIN", "at_photons", "ladder"]
@@ -133,6 +137,29 @@ def _dispersion(centre: Setup, quick: bool) -> Mapping[str, Setup]:
     }
 
 
+def _bounces(centre: Setup, quick: bool) -> Mapping[str, Setup]:
+    """Only where the scene asks for any: without, there is nothing that could be left out."""
+    if not centre.settings.bounces:
+        return {}
+    values = (0, 1) if quick else (0, 1, 2, 4)
+    return {
+        f"{value}": centre.with_settings(bounces=value)
+        for value in values
+        if value < centre.settings.bounces
+    }
+
+
+def _interactions(centre: Setup, quick: bool) -> Mapping[str, Setup]:
+    """Two surfaces take light through a lens; what is reflected inside needs more."""
+    values = (3, 5) if quick else (3, 5, 9, 17)
+    return {f"{value}": centre.with_settings(max_interactions=value) for value in values}
+
+
+def _absorption(centre: Setup, quick: bool) -> Mapping[str, Setup]:
+    clear = without_absorption(centre.scene)
+    return {} if clear == centre.scene else {"none": centre.with_scene(clear)}
+
+
 def _estimator(centre: Setup, quick: bool) -> Mapping[str, Setup]:
     found = {"gather": dataclasses.replace(centre, estimator="gather")}
     for cells in (16,) if quick else (16, 32):
@@ -166,6 +193,11 @@ for _axis in (
     Axis("polarisation", "settings", RESULTS, "what is known of how light vibrates", "auto",
          _polarisation),
     Axis("dispersion", "scene", RESULTS, "the formula of the index", "the scene's", _dispersion),
+    Axis("bounces", "settings", ("picture",), "bounces off diffuse surfaces", "the scene's",
+         _bounces),
+    Axis("internal reflections", "settings", RESULTS, "surfaces that a path may meet", "256",
+         _interactions),
+    Axis("absorption", "scene", RESULTS, "whether media absorb", "the scene's", _absorption),
     Axis("estimator", "estimator", ("bins",), "how irradiance is found", "bins", _estimator),
 ):
     register_axis(_axis)

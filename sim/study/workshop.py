@@ -29,7 +29,7 @@ from sim.method import Method
 from sim.photons.energy import EnergyBooks
 from sim.photons.lamps import Lamps
 from sim.photons.photon_batch import PhotonBatch
-from sim.photons.photon_map import build_photon_map
+from sim.photons.photon_maps import build_photon_maps
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.render import compile_lamps_for, gather_radius, kernels_of, radius_shrinkage
@@ -128,6 +128,7 @@ class Workshop:
             max_interactions=int(setup.settings.max_interactions or 1),
             threads=self.threads,
             store_direct=setup.settings.direct_light == "photons",
+            bounces=int(setup.settings.bounces or 0),
         )
 
     def exposed_rows(self, film: scenes.Film) -> npt.NDArray[np.int64]:
@@ -241,13 +242,13 @@ class _Run:
         """What gathers see of a batch."""
         settings = self.setup.settings
         assert settings.radius is not None
-        self.map = build_photon_map(
+        self.maps = build_photon_maps(
             self.bench.compiled, batch, self.receivers,
             settings.radius * radius_shrinkage(pass_index, settings.alpha),
-            threads=self.workshop.threads,
+            seed=self.seed, pass_index=pass_index, threads=self.workshop.threads,
         )
         return compose_lights(
-            str(settings.precision), self.map, self.receivers, self.lamps, direct=direct
+            str(settings.precision), self.maps, self.receivers, self.lamps, direct=direct
         )
 
     def _expose(self, batch: PhotonBatch, film: Film, pass_index: int) -> None:

@@ -26,6 +26,7 @@ class Darkroom:
         from sim.device import start_device
         from sim.photons.lamps import compile_lamps
         from sim.photons.photon_map import build_photon_map
+        from sim.photons.photon_maps import PhotonMaps
         from sim.photons.receivers import compile_receivers
         from sim.photons.tracing import trace_photons
         from sim.scene_data import compile_scene
@@ -45,7 +46,7 @@ class Darkroom:
             for i in range(passes)
         ]
         self.maps = [
-            build_photon_map(self.compiled, batch, self.receivers, radius, threads=2)
+            PhotonMaps(build_photon_map(self.compiled, batch, self.receivers, radius, threads=2))
             for batch in self.batches
         ]
         self.photons = [batch.to_numpy() for batch in self.batches]

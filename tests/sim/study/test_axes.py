@@ -21,6 +21,17 @@ def centre(small_scene):
 
 
 @pytest.fixture
+def rich_centre(small_scene):
+    """Of a scene that has what some axes leave out."""
+    ball, *others = small_scene.objects
+    tinted = scenes.Dielectric(medium="SF11", absorption="published")
+    objects = (ball.model_copy(update={"material": tinted}), *others)
+    scene = small_scene.model_copy(update={"objects": objects})
+    settings = RenderSettings(radius=0.01, threads=2, bounces=8)
+    return Setup(scene, settings.resolved(scene))
+
+
+@pytest.fixture
 def own_registry(monkeypatch):
     monkeypatch.setattr(registry, "_REGISTRY", dict(registry._REGISTRY))
 
@@ -31,7 +42,8 @@ PARTS = {"settings": {"settings"}, "method": {"method", "settings"}, "scene": {"
 
 
 @pytest.mark.parametrize("quick", [True, False])
-def test_each_axis_changes_what_it_says_and_nothing_else(centre, quick):
+def test_each_axis_changes_what_it_says_and_nothing_else(rich_centre, quick):
+    centre = rich_centre
     for axis in axes():
         found = axis.vary(centre, quick)
         assert found, axis.name
@@ -43,6 +55,17 @@ def test_each_axis_changes_what_it_says_and_nothing_else(centre, quick):
             }
             assert changed <= PARTS[axis.changes], (axis.name, value)
             assert changed or value == axis.default, (axis.name, value)
+
+
+def test_what_a_scene_has_not_got_cannot_be_left_out(centre, rich_centre):
+    found = {axis.name: axis for axis in axes()}
+    assert not found["absorption"].vary(centre, False)
+    assert not found["bounces"].vary(centre, False)
+    assert list(found["bounces"].vary(rich_centre, False)) == ["0", "1", "2", "4"]
+    clear = found["absorption"].vary(rich_centre, False)["none"].scene
+    media = [one.material.resolved() for one in clear.objects[:1]]
+    assert [medium.absorption for medium in media] == [None]
+    assert media[0].dispersion == rich_centre.scene.objects[0].material.resolved().dispersion
 
 
 def test_the_engines_choices_are_all_there(centre):
@@ -107,12 +130,12 @@ def test_a_later_feature_registers_its_axis_once(centre, own_registry):
     def vary(setup, quick):
         return {"none": setup.with_settings(max_interactions=7)}
 
-    axis = Axis("absorption", "settings", ("picture",), "whether glass absorbs", "on", vary)
+    axis = Axis("fluorescence", "settings", ("picture",), "whether glass glows", "on", vary)
     assert register_axis(axis) is axis
-    found = [one for one in make_points(centre, QUICK, RESULTS) if one.axis == "absorption"]
+    found = [one for one in make_points(centre, QUICK, RESULTS) if one.axis == "fluorescence"]
     assert [(one.value, one.results) for one in found] == [("none", ("picture",))]
     assert found[0].setup.settings.max_interactions == 7
-    with pytest.raises(SettingsError, match="absorption"):
+    with pytest.raises(SettingsError, match="fluorescence"):
         register_axis(axis)
 
 
