@@ -17,6 +17,7 @@ from sim.optics.dielectric import reflect, refract, sin2_theta_t
 from sim.optics.polarisation import (
     apply_surface,
     conductor_matrix,
+    frame_across,
     fresnel_amplitudes,
     share_of_flux,
     total_reflection_phase,
@@ -96,7 +97,14 @@ def make_probes(precision):
         io_light[i] = light
         io_s[i] = s
 
-    return SimpleNamespace(meet=meet, turn=turn, types=types)
+    @wp.kernel(**options)
+    def stand(
+        directions: wp.array(dtype=vec3), ups: wp.array(dtype=vec3), out_s: wp.array(dtype=vec3)
+    ):
+        i = wp.tid()
+        out_s[i] = frame_across(directions[i], ups[i])
+
+    return SimpleNamespace(meet=meet, turn=turn, stand=stand, types=types)
 
 
 @pytest.fixture(params=["float64", "float32"])
@@ -227,6 +235,27 @@ def test_frames_stay_across_the_ray(precision, surface):
         oblique = np.linalg.norm(np.cross(direction, normal), axis=1) > 0.0
         along = np.sum(frames * vectors, axis=1)[oblique]
         np.testing.assert_allclose(along, 0.0, rtol=0, atol=tolerance)
+
+
+def test_a_frame_stands_as_upright_as_it_can(precision):
+    direction, up, _, _ = random_light(precision)
+    up[:4] = direction[:4]  # along the ray: any frame will do
+    up[4:8] = unit(direction[4:8] + 1e-2 * up[4:8])  # nearly
+    probes = make_probes(precision)
+    vec3 = probes.types.vec3
+    out = wp.zeros(COUNT, dtype=vec3, device="cpu")
+    inputs = [wp.array(a, dtype=vec3, device="cpu") for a in (direction, up)]
+    wp.launch(probes.stand, dim=COUNT, inputs=inputs, outputs=[out], device="cpu")
+    s = out.numpy().astype(np.float64)
+    np.testing.assert_allclose(np.linalg.norm(s, axis=1), 1.0, atol=8.0 * eps(precision))
+    np.testing.assert_allclose(np.sum(s * direction, axis=1), 0.0, atol=8.0 * eps(precision))
+    across = up - direction * np.sum(up * direction, axis=1)[:, None]
+    length = np.linalg.norm(across[4:], axis=1)
+    known = length > 1e-3  # the probe's threshold; at normal incidence `up` is along the ray
+    nearest = across[4:][known] / length[known, None]
+    # The difference that `across` is has roundings of the size of `up`.
+    error = np.linalg.norm(s[4:][known] - nearest, axis=1)
+    assert np.all(error <= 8.0 * eps(precision) / length[known])
 
 
 def test_turning_the_frame_does_not_turn_the_light(precision):
