@@ -20,8 +20,20 @@ from scenes.absorption import (
 )
 from scenes.camera import Camera
 from scenes.emission import Blackbody, Laser, Lines, SpectrumTable
-from scenes.emitters import Beam, Point, RectangleLamp, RoundProfile, SlitProfile, SphereLamp, Spot
+from scenes.emitters import (
+    Beam,
+    Environment,
+    Mask,
+    Point,
+    RectangleLamp,
+    RoundProfile,
+    SlitProfile,
+    SphereLamp,
+    Spot,
+    Sun,
+)
 from scenes.errors import Problem, SceneError
+from scenes.exposure import SensorExposure
 from scenes.files import gallery, gallery_path, load, loads, schema
 from scenes.film import Film
 from scenes.frames import rotation_matrix
@@ -29,10 +41,12 @@ from scenes.materials import Absorber, Dielectric, Lambertian, Metal, Mirror, is
 from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMedium
 from scenes.metals import MetalTable
 from scenes.objects import SceneObject
+from scenes.pixel_filter import BoxFilter, GaussianFilter, TentFilter
 from scenes.polarisation import Polarisation
 from scenes.polariser import Polariser
 from scenes.reflectance import ReflectanceTable
 from scenes.scene import RenderDefaults, Scene
+from scenes.sensors import IrradianceSensor, RaySensor
 from scenes.shapes import (
     Box,
     Disk,
@@ -54,6 +68,7 @@ __all__ = [
     "Beam",
     "Blackbody",
     "Box",
+    "BoxFilter",
     "Camera",
     "CauchyMedium",
     "CoefficientTable",
@@ -61,16 +76,20 @@ __all__ = [
     "DecadicAbsorption",
     "Dielectric",
     "Disk",
+    "Environment",
     "ExtinctionAbsorption",
     "ExtinctionTable",
     "Film",
+    "GaussianFilter",
     "HeightField",
     "InternalTransmittance",
+    "IrradianceSensor",
     "Lambertian",
     "Laser",
     "Lens",
     "LensSurface",
     "Lines",
+    "Mask",
     "Mesh",
     "Metal",
     "MetalTable",
@@ -83,6 +102,7 @@ __all__ = [
     "Polyhedron",
     "Prism",
     "Problem",
+    "RaySensor",
     "Rectangle",
     "RectangleLamp",
     "ReflectanceTable",
@@ -92,12 +112,15 @@ __all__ = [
     "SceneError",
     "SceneObject",
     "SellmeierMedium",
+    "SensorExposure",
     "SlitProfile",
     "SpectrumTable",
     "Sphere",
     "SphereLamp",
     "Spot",
+    "Sun",
     "TableMedium",
+    "TentFilter",
     "TransmittanceTable",
     "Triangulated",
     "Wave",

@@ -8,12 +8,14 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from scenes.emitters import AnyEmitter, Emitter
+from scenes.endless import endless_problems
 from scenes.errors import Problem
 from scenes.film import Film
 from scenes.materials import Dielectric, Metal
 from scenes.media import AMBIENT_NAMES, AmbientSpec, DescribedMedium, resolve_medium
 from scenes.objects import SceneObject
 from scenes.overlap import overlap_problems
+from scenes.sensors import AnySensor, Sensor, bin_problems
 from spectra import Medium, WavelengthOutOfRange, air_index
 
 __all__ = ["cross_problems", "cross_problems_of_valid_parts", "used_ranges_nm"]
@@ -27,6 +29,7 @@ _FILM: TypeAdapter[Any] = TypeAdapter(Film)
 _AMBIENT: TypeAdapter[Any] = TypeAdapter(AmbientSpec)
 _OBJECT: TypeAdapter[Any] = TypeAdapter(SceneObject)
 _EMITTER: TypeAdapter[Any] = TypeAdapter(AnyEmitter)
+_SENSOR: TypeAdapter[Any] = TypeAdapter(AnySensor)
 
 
 def used_ranges_nm(film: Film, emitters: Sequence[Emitter]) -> list[Interval]:
@@ -48,6 +51,7 @@ def cross_problems(
     ambient: str | DescribedMedium,
     objects: Mapping[int, SceneObject],
     emitters: Mapping[int, Emitter],
+    sensors: Mapping[int, Sensor],
 ) -> list[Problem]:
     """What is wrong between the parts of a scene.
 
@@ -56,12 +60,16 @@ def cross_problems(
         ambient: What surrounds the objects.
         objects: Objects by their index in the file.
         emitters: Emitters by their index in the file.
+        sensors: Sensors by their index in the file.
     """
     return [
         *_repeated_names("objects", {i: one.name for i, one in objects.items()}),
         *_repeated_names("emitters", {i: one.name for i, one in emitters.items()}),
+        *_repeated_names("sensors", {i: one.name for i, one in sensors.items()}),
+        *bin_problems(film, sensors),
         *_range_problems(used_ranges_nm(film, list(emitters.values())), ambient, objects),
         *overlap_problems(objects),
+        *endless_problems(ambient, objects, emitters),
     ]
 
 
@@ -166,13 +174,17 @@ def cross_problems_of_valid_parts(
     film = _valid(_FILM, data.get("film", {}), context)
     objects = _valid_entries(_OBJECT, data.get("objects", []), context)
     emitters = _valid_entries(_EMITTER, data.get("emitters", []), context)
+    sensors = _valid_entries(_SENSOR, data.get("sensors", []), context)
     if film is None or (data.get("emitters") and not emitters):
         return [
             *_repeated_names("objects", {i: one.name for i, one in objects.items()}),
             *_repeated_names("emitters", {i: one.name for i, one in emitters.items()}),
+            *_repeated_names("sensors", {i: one.name for i, one in sensors.items()}),
         ]
     ambient = _valid(_AMBIENT, data.get("ambient", "reference"), context) or "reference"
-    return cross_problems(film=film, ambient=ambient, objects=objects, emitters=emitters)
+    return cross_problems(
+        film=film, ambient=ambient, objects=objects, emitters=emitters, sensors=sensors
+    )
 
 
 def _valid(kind: TypeAdapter[Any], value: object, context: Mapping[str, Any]) -> Any:

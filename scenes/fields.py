@@ -27,6 +27,7 @@ __all__ = [
     "Curvature",
     "Degrees",
     "Direction",
+    "Extent",
     "InverseLength",
     "NonNegative",
     "Number",
@@ -114,6 +115,10 @@ def _size_m(length: float, info: ValidationInfo) -> float:
     return length_m
 
 
+def _extent_m(length: float, info: ValidationInfo) -> float:
+    return length if length == 0.0 else _size_m(length, info)
+
+
 def _signed_radius_m(radius: float, info: ValidationInfo) -> float:
     if radius == 0.0:
         allowed = "any length but 0; a flat surface is written curvature = 0"
@@ -173,6 +178,9 @@ Coordinate = Annotated[Number, AfterValidator(_coordinate_m)]
 
 Size = Annotated[Number, Field(gt=0), AfterValidator(_size_m)]
 """A length that must exist [m]."""
+
+Extent = Annotated[Number, Field(ge=0), AfterValidator(_extent_m)]
+"""A length that may be 0 [m]."""
 
 SignedRadius = Annotated[Number, AfterValidator(_signed_radius_m)]
 """A radius of curvature [m], positive or negative."""

@@ -9,6 +9,7 @@ from pydantic import Field, Strict, model_validator
 from scenes.errors import Problem, refusal
 from scenes.fields import WAVELENGTH_RANGE_NM, Number, Positive, Wavelength
 from scenes.model import SceneModel
+from scenes.pixel_filter import BoxFilter, PixelFilter
 
 __all__ = ["Film"]
 
@@ -34,6 +35,9 @@ class Film(SceneModel):
         default=None,
         description="width of a single band [nm], 10 if not given; several bands touch each other,"
         " so that theirs is the spacing of the centres",
+    )
+    filter: PixelFilter = Field(
+        default=BoxFilter(), description="how the light around a pixel's middle is weighed"
     )
     observer: Literal["CIE 1931 2 degree", "CIE 2015 2 degree"] = Field(
         default="CIE 1931 2 degree", description="colour matching functions of the picture"

@@ -8,6 +8,7 @@ there a path may be any, relative to the current folder.
 from pathlib import Path
 
 from pydantic import ValidationInfo
+from pydantic_core import PydanticCustomError
 
 from scenes.errors import Problem, refusal, shown
 from scenes.fields import folder_of
@@ -34,6 +35,8 @@ def nearby_file(name: str, info: ValidationInfo, *, field: str = "file") -> Path
             path = _inside(folder, name, field)
         if path.is_file():
             return path.resolve()
+    except PydanticCustomError:  # is a ValueError too
+        raise
     except (OSError, ValueError) as error:  # no path can look like this
         raise refusal(Problem(field, f"{shown(name)} cannot be a path: {error}", name)) from None
     where = f"in {folder}" if folder is not None else "there"

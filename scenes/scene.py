@@ -14,7 +14,7 @@ from pydantic import (
 
 from scenes.camera import Camera
 from scenes.checks import cross_problems
-from scenes.emitters import AnyEmitter
+from scenes.emitters import AnyEmitter, Glowing
 from scenes.errors import Problem, SceneError, refusal
 from scenes.fields import Count, Size, is_file
 from scenes.film import Film
@@ -22,6 +22,7 @@ from scenes.materials import Lambertian
 from scenes.media import AMBIENT_NAMES, AmbientSpec, resolve_medium
 from scenes.model import SceneModel
 from scenes.objects import SceneObject
+from scenes.sensors import AnySensor
 from spectra import Medium
 
 __all__ = ["RenderDefaults", "Scene"]
@@ -65,6 +66,7 @@ class Scene(SceneModel):
     )
     objects: tuple[SceneObject, ...] = Field(default=(), description="what light meets")
     emitters: tuple[AnyEmitter, ...] = Field(default=(), description="where light comes from")
+    sensors: tuple[AnySensor, ...] = Field(default=(), description="where light is measured")
 
     _source_name: str = PrivateAttr(default="scene")
     _source_text: str | None = PrivateAttr(default=None)
@@ -95,23 +97,45 @@ class Scene(SceneModel):
         """Make sure that a picture can be taken.
 
         Raises:
-            SceneError: if camera, emitters, light of recorded wavelengths or receivers are missing.
+            SceneError: if camera, emitters, light of recorded wavelengths or what shows it are
+                missing.
         """
         problems = []
         if self.camera is None:
             problems.append(_lacking("camera", "a table [camera] with position and look_at"))
-        if not self.emitters:
-            problems.append(_lacking("emitters", "at least one [[emitters]]"))
-        elif not any(one.emission().band_flux(self.film.edges_nm).any() for one in self.emitters):
-            low, high = self.film.edges_nm[[0, -1]]
-            allowed = f"an emitter that shines between {low:g} and {high:g} nm"
-            message = f"none gives light that the film records; it needs {allowed}"
-            problems.append(Problem("emitters", message, None, allowed))
-        if not any(isinstance(one.material, Lambertian) for one in self.objects):
-            allowed = "at least one [[objects]] with a lambertian material, to receive light"
+        problems += self._dark("a picture")
+        receives = any(isinstance(one.material, Lambertian) for one in self.objects)
+        shows = any(isinstance(one, Glowing) and one.visible for one in self.emitters)
+        if not receives and not shows:
+            allowed = "at least one [[objects]] with a lambertian material, to receive light,"
+            allowed += " or a lamp that can be seen"
             problems.append(_lacking("objects", allowed))
         if problems:
             raise SceneError(self.source_name, problems)
+
+    def require_measurable(self) -> None:
+        """Make sure that light can be measured.
+
+        Raises:
+            SceneError: if sensors, emitters or light of recorded wavelengths are missing.
+        """
+        problems = self._dark("a measurement")
+        if not self.sensors:
+            allowed = 'at least one [[sensors]], of type "irradiance" or "rays"'
+            problems.append(_lacking("sensors", allowed, "a measurement"))
+        if problems:
+            raise SceneError(self.source_name, problems)
+
+    def _dark(self, purpose: str) -> list[Problem]:
+        """What is wrong if nothing shines."""
+        if not self.emitters:
+            return [_lacking("emitters", "at least one [[emitters]]", purpose)]
+        if any(one.emission().band_flux(self.film.edges_nm).any() for one in self.emitters):
+            return []
+        low, high = self.film.edges_nm[[0, -1]]
+        allowed = f"an emitter that shines between {low:g} and {high:g} nm"
+        message = f"none gives light that the film records; it needs {allowed}"
+        return [Problem("emitters", message, None, allowed)]
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy; if changed, it no longer claims to be what its file's text says."""
@@ -128,7 +152,7 @@ class Scene(SceneModel):
             raise refusal(Problem("", f"must be {allowed}", unit, allowed))
         return "m"
 
-    @field_validator("objects", "emitters", mode="after")
+    @field_validator("objects", "emitters", "sensors", mode="after")
     @classmethod
     def _everything_has_a_name(cls, entries: tuple[Any, ...], info: ValidationInfo) -> Any:
         return tuple(
@@ -143,11 +167,18 @@ class Scene(SceneModel):
             ambient=self.ambient,
             objects=dict(enumerate(self.objects)),
             emitters=dict(enumerate(self.emitters)),
+            sensors=dict(enumerate(self.sensors)),
         )
+        stops = self.film.exposure_stops
+        if stops is not None and self.camera is not None and self.camera.exposure is not None:
+            allowed = "left out where the camera has an exposure"
+            problems.append(
+                Problem("film.exposure_stops", f"must be {allowed}", stops, allowed)
+            )
         if problems:
             raise refusal(*problems)
         return self
 
 
-def _lacking(field: str, allowed: str) -> Problem:
-    return Problem(field, f"missing; a picture needs {allowed}", None, allowed)
+def _lacking(field: str, allowed: str, purpose: str = "a picture") -> Problem:
+    return Problem(field, f"missing; {purpose} needs {allowed}", None, allowed)

@@ -21,9 +21,12 @@ if TYPE_CHECKING:
     )
     from sim.image.exr_reading import SpectralImage, read_exr
     from sim.image.picture import Picture
+    from sim.measure import Measurement, measure
     from sim.progress import Progress
     from sim.ray_path import RayPath
     from sim.render import render
+    from sim.sensors.irradiance import IrradianceReading
+    from sim.sensors.rays import RaysReading
     from sim.settings import RenderSettings
     from sim.single_ray import trace_ray
 
@@ -31,14 +34,18 @@ __all__ = [
     "CapacityError",
     "DeviceError",
     "FileFormatError",
+    "IrradianceReading",
+    "Measurement",
     "NephroidError",
     "OutputError",
     "Picture",
     "Progress",
     "RayPath",
+    "RaysReading",
     "RenderSettings",
     "SettingsError",
     "SpectralImage",
+    "measure",
     "read_exr",
     "render",
     "trace_ray",
@@ -48,14 +55,18 @@ _HOME = {
     "CapacityError": "sim.errors",
     "DeviceError": "sim.errors",
     "FileFormatError": "sim.errors",
+    "IrradianceReading": "sim.sensors.irradiance",
+    "Measurement": "sim.measure",
     "NephroidError": "sim.errors",
     "OutputError": "sim.errors",
     "Picture": "sim.image.picture",
     "Progress": "sim.progress",
     "RayPath": "sim.ray_path",
+    "RaysReading": "sim.sensors.rays",
     "RenderSettings": "sim.settings",
     "SettingsError": "sim.errors",
     "SpectralImage": "sim.image.exr_reading",
+    "measure": "sim.measure",
     "read_exr": "sim.image.exr_reading",
     "render": "sim.render",
     "trace_ray": "sim.single_ray",

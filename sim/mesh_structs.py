@@ -12,10 +12,13 @@ __all__ = ["make_mesh_structs"]
 
 @functools.cache
 def make_mesh_structs(precision: str) -> SimpleNamespace:
-    """Structs of one precision: Box, Triangle, Mesh, and Meshes, which holds the arrays of all.
+    """Structs of one precision: Box, Triangle, Border, Mesh, and Meshes: the arrays of all.
 
     Triangle: its corners; the `patch` that it is of, see `scenes.shapes.surface`; and, since a
     large triangle has several rows, the first of them, its `face`.
+
+    Border, one a triangle: `clearance`, no more than the distance [m] of any of its points to where
+    its patch ends; and the `face` across each side that is of the same patch, else −1.
 
     Mesh: `centre`, which its coordinates are relative to; its tree, with `inner_nodes` nodes above
     its leaves, and `leaf_size` triangles in each of those, in the leaves' order; `first_normal`,
@@ -39,6 +42,11 @@ def make_mesh_structs(precision: str) -> SimpleNamespace:
         face: int
 
     @wp.struct
+    class Border:
+        clearance: real
+        across: wp.vec3i
+
+    @wp.struct
     class Mesh:
         centre: vec3
         first_node: int
@@ -56,7 +64,10 @@ def make_mesh_structs(precision: str) -> SimpleNamespace:
         rows: wp.array(dtype=Mesh)
         nodes: wp.array(dtype=Box)
         triangles: wp.array(dtype=Triangle)
+        borders: wp.array(dtype=Border)
         corner_normals: wp.array(dtype=vec3)
         count: int
 
-    return SimpleNamespace(Box=Box, Triangle=Triangle, Mesh=Mesh, Meshes=Meshes)
+    return SimpleNamespace(
+        Box=Box, Triangle=Triangle, Border=Border, Mesh=Mesh, Meshes=Meshes
+    )

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 import scenes
+from scenes.emitters import DistantEmitter
 from sim.canary import choose_kernels
 from sim.device import start_device
 from sim.errors import SettingsError
@@ -44,6 +45,11 @@ from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
 from sim.scene_data import CompiledScene
+from sim.sensors.origin import Origin
+from sim.sensors.pass_crossings import PassCrossings
+from sim.sensors.readings import read_sensors
+from sim.sensors.sensor_bank import SensorBank, compile_sensors
+from sim.sensors.tally import SensorTally
 from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
@@ -94,25 +100,32 @@ def render(
             scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device,
             passes=plan.passes,
         )
-        radius = plan.radius or gather_radius(survey)
-    studio = _Studio(compiled, lamps, receivers, camera, plan, radius, watch)
+        radius = plan.radius or gather_radius(survey, unseen=_radius_unseen(compiled))
+        sensors = compile_sensors(compiled)
+    studio = _Studio(compiled, lamps, receivers, camera, sensors, plan, radius, watch)
+    tally = SensorTally(sensors) if sensors is not None else None
     books = []
     rule = StopRule(plan, watch)
     with closing(studio.photon_maps()) as photon_maps:
-        for pass_index, (maps, pass_books) in enumerate(photon_maps):
+        for pass_index, (maps, pass_books, crossings) in enumerate(photon_maps):
             books.append(pass_books)
+            if tally is not None and crossings is not None:
+                tally.add(crossings)
             with watch.timing("gather"):
                 studio.expose(film, maps, pass_index)
             if film.passes % film.turns == 0 and rule.ends_after(film):
                 break
+    energy, closed = EnergyBooks.mean(books), plan.closed(film.passes)
+    origin = Origin(scene=scene, settings=closed, energy=energy)
     return Picture(
         spectral_radiance=film.radiance(),
         standard_error=film.standard_error(),
         accuracy=film.accuracy(),
         edges_nm=edges_nm,
-        energy=EnergyBooks.mean(books),
+        energy=energy,
         scene=scene,
-        settings=plan.closed(film.passes),
+        settings=closed,
+        sensors=read_sensors(tally, origin) if tally is not None else {},
         stopping=rule.outcome,
         timings=watch.timings,
         features=choice.report(),
@@ -126,15 +139,20 @@ def kernels_of(precision: str, features: Features) -> list[Any]:
         *(make(precision, features) for make in special),
         make_collect(precision),
         make_reorder(precision),
-        make_retrace_emission(precision, features.method.sampler),
+        make_retrace_emission(precision, features),
     ]
 
 
 def compile_lamps_for(
     compiled: CompiledScene, survey: Survey, plan: ResolvedSettings
 ) -> Lamps:
-    """The lamps, with photons for what they have to show: all light, or what has met glass."""
+    """The lamps, with photons for what they have to show: all light, or what has met glass.
+
+    Raises:
+        SettingsError: there would have to be photons without end.
+    """
     edges_nm = np.asarray(compiled.scene.film.edges_nm, dtype=np.float64)
+    _refuse_endless_light(compiled.scene, plan)
     if plan.direct_light == "photons":
         return compile_lamps(compiled, edges_nm, plan.photons, view=survey)
     return compile_guided_lamps(
@@ -143,23 +161,53 @@ def compile_lamps_for(
     )
 
 
+def _refuse_endless_light(scene: scenes.Scene, plan: ResolvedSettings) -> None:
+    """Photons from afar come to a sphere around the scene; an endless plane lies beyond it too.
+
+    Shadow rays from the plane to the sky have no such limit.
+    """
+    distant = [one.name for one in scene.emitters if isinstance(one, DistantEmitter)]
+    endless = [one.name for one in scene.objects if isinstance(one.shape, scenes.Plane)]
+    if distant and endless:
+        reason = f"for {distant[0]} is infinitely far away, and {endless[0]} has no end"
+        if plan.direct_light == "photons":
+            raise SettingsError("direct_light", "photons", f'"lamps", {reason}')
+        if plan.bounces > 0:
+            raise SettingsError("bounces", plan.bounces, f"0, {reason}")
+
+
 def radius_shrinkage(pass_index: int, alpha: float) -> float:
     """Radius of a pass relative to the first one's (Knaus & Zwicker 2011, eq. 15)."""
     i = np.arange(1.0, pass_index + 1.0)
     return float(np.sqrt(np.prod((i + alpha) / (i + 1.0))))
 
 
-def gather_radius(survey: Survey) -> float:
+def _radius_unseen(compiled: CompiledScene) -> float | None:
+    """A radius for a picture of lamps alone, on which nothing depends as far as one can tell."""
+    return 0.01 * compiled.bounding_radius if compiled.features.visible_lamps else None
+
+
+def gather_radius(survey: Survey, *, unseen: float | None = None) -> float:
     """The first pass's gather radius, from the median pixel's footprint [m].
+
+    Args:
+        survey: what the camera sees.
+        unseen: the radius if it sees no diffuse surface, in a picture that can do without.
 
     Raises:
         SettingsError: no pixel sees a diffuse surface to measure it on.
     """
     if len(survey.widths) == 0:
+        if unseen is not None:
+            return unseen
         raise SettingsError(
             "radius", None, "a radius in metres, since the camera sees no diffuse surface"
         )
     return FOOTPRINTS_A_RADIUS * float(np.median(survey.widths))
+
+
+_Pass = tuple[PhotonMaps, EnergyBooks, PassCrossings | None]
+"""One pass: its photons in maps, where its energy went, and what sensors have seen of it."""
 
 
 @dataclass(frozen=True)
@@ -170,12 +218,13 @@ class _Studio:
     lamps: Lamps
     receivers: Any
     camera: Any
+    sensors: SensorBank | None
     plan: ResolvedSettings
     radius: float
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[tuple[PhotonMaps, EnergyBooks], None, None]:
-        """The photon map of each pass, in order, and its energy books.
+    def photon_maps(self) -> Generator[_Pass, None, None]:
+        """Each pass, in order.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
         and would leave the other cores idle.
@@ -192,9 +241,7 @@ class _Studio:
             finally:
                 stop.set()
 
-    def _photon_map(
-        self, pass_index: int, stop: threading.Event
-    ) -> tuple[PhotonMaps, EnergyBooks]:
+    def _photon_map(self, pass_index: int, stop: threading.Event) -> _Pass:
         """Emit and trace the photons of one pass, and map them."""
         with self.watch.timing("trace photons"):
             batch = trace_photons(
@@ -205,6 +252,7 @@ class _Studio:
                 max_interactions=self.plan.max_interactions,
                 threads=self.plan.threads,
                 store_direct=self.plan.direct_light == "photons",
+                sensors=self.sensors,
                 bounces=self.plan.bounces,
                 stop=stop,
                 on_done=self.watch.count_photons,
@@ -215,7 +263,7 @@ class _Studio:
                 self.compiled, batch, self.receivers, radius, seed=self.plan.seed,
                 pass_index=pass_index, threads=self.plan.threads, stop=stop,
             )
-        return maps, batch.books
+        return maps, batch.books, batch.crossings
 
     def expose(self, film: Film, maps: PhotonMaps, pass_index: int) -> None:
         """Expose the film to one pass."""

@@ -17,7 +17,7 @@ import scenes
 from scenes.frames import frame_about
 from sim.device_arrays import struct_array
 from sim.features import Features, find_features
-from sim.mesh_data import compile_meshes
+from sim.mesh_data import PlacedMesh, compile_meshes
 from sim.method import Method
 from sim.precision import precision_types
 from sim.scene_media import SceneMedia, collect_media
@@ -39,7 +39,7 @@ from sim.scene_structs import (
 )
 from spectra import Medium
 
-__all__ = ["CompiledScene", "compile_scene", "find_origin"]
+__all__ = ["CompiledScene", "bounding_radius", "compile_scene", "find_origin"]
 
 FloatArray = npt.NDArray[np.float64]
 Row = tuple[Any, ...]
@@ -82,17 +82,24 @@ class CompiledScene:
 
     @property
     def bounding_radius(self) -> float:
-        """Radius about the local origin that holds every finite object [m]; 1 if there is none."""
-        return bounding_radius(self.scene, self.origin)
+        """Radius about the local origin that holds every finite object and sensor [m].
+
+        It is 1 if there is none.
+        """
+        return bounding_radius(self.scene, self.origin, with_sensors=True)
 
 
 def find_origin(scene: scenes.Scene) -> FloatArray:
-    """Centre of the finite objects' bounding box, (3,) [m]; the world's origin if there is none."""
+    """Centre of the finite objects' bounding box, (3,) [m].
+
+    Without any it is that of the sensors, and without these the world's origin.
+    """
     spheres = [
         item.shape.bounding_sphere()
         for item in scene.objects
         if not isinstance(item.shape, scenes.Plane)
     ]
+    spheres = spheres or [sensor.shape.bounding_sphere() for sensor in scene.sensors]
     if not spheres:
         return np.zeros(3)
     low = np.min([np.asarray(centre) - radius for centre, radius in spheres], axis=0)
@@ -101,13 +108,22 @@ def find_origin(scene: scenes.Scene) -> FloatArray:
     return middle
 
 
-def bounding_radius(scene: scenes.Scene, origin: FloatArray) -> float:
-    """Radius about `origin` that holds every finite object [m]; 1 if there is none."""
+def bounding_radius(
+    scene: scenes.Scene, origin: FloatArray, *, with_sensors: bool = False
+) -> float:
+    """Radius about `origin` that holds every finite object [m]; 1 if there is none.
+
+    Args:
+        scene: the scene.
+        origin: (3,) [m].
+        with_sensors: sensors count as objects: light must be able to reach them.
+    """
+    items = (*scene.objects, *(scene.sensors if with_sensors else ()))
     reach = [
         float(np.linalg.norm(np.subtract(centre, origin))) + radius
         for centre, radius in (
             item.shape.bounding_sphere()
-            for item in scene.objects
+            for item in items
             if not isinstance(item.shape, scenes.Plane)
         )
     ]
@@ -175,7 +191,7 @@ def _fill_shapes(
     rows: dict[str, list[Row]] = {
         name: [] for name in ("spheres", "flats", "polyhedra", "planes", "lenses")
     }
-    meshes: list[tuple[scenes.Triangulated, FloatArray, int]] = []
+    meshes: list[PlacedMesh] = []
     places: list[tuple[int, int]] = []
     for prim, item in enumerate(scene.objects):
         shape = item.shape
@@ -191,7 +207,8 @@ def _fill_shapes(
             rows["flats"].append(_flat_row(shape, centre, prim))
         elif isinstance(shape, scenes.Triangulated):
             places.append((int(SHAPE_MESH), len(meshes)))
-            meshes.append((shape, centre, prim))
+            receives = isinstance(item.material, scenes.Lambertian)
+            meshes.append(PlacedMesh(shape, centre, prim, receives))
         else:
             places.append((int(SHAPE_POLYHEDRON), len(rows["polyhedra"])))
             normals, offsets = shape.faces()

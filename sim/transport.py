@@ -187,7 +187,8 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         A namespace with the structs of `make_scene_structs` and the device functions
         `intersect(scene, ray) -> Hit`,
         `media_indices(scene, wavelength_nm)`, `scatter(scene, ray, hit, indices) -> Interaction`,
-        `interact(scene, ray, indices)`, which is both in one, and `split(interaction)`.
+        `interact(scene, ray, indices)`, which is both in one, `split(interaction)`, and
+        `facet_toward(scene, interaction, direction)`, the normal that no smoothing has bent.
     """
     structs = make_scene_structs(precision)
     real, vec3, vec4 = structs.real, structs.vec3, structs.vec4
@@ -372,6 +373,7 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         media_indices=media.media_indices,
         absorption_of=absorption_of,
         Indices=indices_type,
+        facet_toward=facet_toward,
         scatter=scatter,
         interact=interact,
         split=split,

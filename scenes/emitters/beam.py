@@ -4,7 +4,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from scenes.emitters.emitter import Emitter
+from scenes.emitters.emitter import LocalEmitter
+from scenes.emitters.mask import Mask
 from scenes.errors import Problem, refusal
 from scenes.fields import Degrees, Direction, Position, Size
 from scenes.frames import Frame, frame_about
@@ -21,9 +22,9 @@ class RoundProfile(SceneModel):
 
 
 class SlitProfile(SceneModel):
-    """A rectangle, evenly filled."""
+    """A rectangle, evenly filled, or as a mask says."""
 
-    type: Literal["slit"] = Field(default="slit", description="evenly filled rectangle")
+    type: Literal["slit"] = Field(default="slit", description="rectangle")
     width: Size = Field(description="extent across `up` (length)")
     height: Size = Field(description="extent along `up` (length)")
     up: Direction | None = Field(
@@ -31,13 +32,16 @@ class SlitProfile(SceneModel):
         description="direction of the height; where not given, as near as can be to +y, or to -z"
         " if the beam is vertical",
     )
+    mask: Mask | None = Field(
+        default=None, description="where the light comes through; everywhere if not given"
+    )
 
 
 Profile = Annotated[RoundProfile | SlitProfile, Field(discriminator="type")]
 """The cross-section of a beam where it starts."""
 
 
-class Beam(Emitter):
+class Beam(LocalEmitter):
     """A beam that starts from a profile perpendicular to its direction."""
 
     type: Literal["beam"] = Field(default="beam", description="collimated beam")

@@ -1,8 +1,9 @@
-"""What all emitters have in common: a name, a total flux and a spectrum."""
+"""What emitters have in common: a name and a spectrum, a flux, a surface that can be seen."""
 
+from abc import abstractmethod
 from typing import Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, StrictBool, model_validator
 
 from scenes.emission import SpectrumSpec, resolve_spectrum
 from scenes.errors import Problem, refusal
@@ -11,7 +12,7 @@ from scenes.model import SceneModel
 from scenes.polarisation import Polarisation
 from spectra import EmissionSpectrum
 
-__all__ = ["Emitter"]
+__all__ = ["Emitter", "Glowing", "LocalEmitter"]
 
 
 class Emitter(SceneModel):
@@ -20,7 +21,6 @@ class Emitter(SceneModel):
     name: str = Field(
         default="", description='name in messages, unique; "emitters[i]" if not given'
     )
-    flux: Positive = Field(description="radiant flux over the whole spectrum [W]")
     spectrum: SpectrumSpec = Field(description="name of a spectrum, or a table that describes one")
 
     polarisation: Polarisation | None = Field(
@@ -46,3 +46,24 @@ class Emitter(SceneModel):
             allowed = "a direction not parallel to the light's"
             raise refusal(Problem("polarisation.up", f"must be {allowed}", light.up, allowed))
         return self
+
+
+class LocalEmitter(Emitter):
+    """A source of light that is somewhere in the scene."""
+
+    flux: Positive = Field(description="radiant flux over the whole spectrum [W]")
+
+
+class Glowing(SceneModel):
+    """Something that shines, and can be looked at."""
+
+    visible: StrictBool = Field(
+        default=True,
+        description="whether the camera sees the lamp itself, directly, through glass and in"
+        " mirrors; it shines all the same",
+    )
+
+    @property
+    @abstractmethod
+    def full_radiance(self) -> float:
+        """Radiance of its surface over the whole spectrum [W m⁻² sr⁻¹]."""

@@ -1,8 +1,9 @@
-"""Render a scene to a spectral EXR and a PNG.
+"""Render a scene to a spectral EXR and a PNG, and write what its sensors measure beside them.
 
 The EXR holds spectral radiance band by band, its standard error, linear RGB, and everything that
-reproduces it. Settings that are left out come from the scene's own [render] table, then from the
-program's defaults.
+reproduces it. Of a scene without a camera only the sensors are written: irradiance as an EXR and as
+arrays (.npz), rays as arrays. Settings that are left out come from the scene's own [render] table,
+then from the program's defaults.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from sim.commands.arguments import count, duration, exr_file, fraction, png_file
 if TYPE_CHECKING:
     from scenes import Scene
     from sim.image.picture import Picture
+    from sim.measure import Measurement
+    from sim.photons.energy import EnergyBooks
     from sim.settings import RenderSettings
 
 __all__ = ["SUMMARY", "add_arguments", "run"]
@@ -90,9 +93,10 @@ _stops.__name__ = "number of stops"
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Render, then write both files; outputs, settings and scene are checked before."""
+    """Render, then write the files; outputs, settings and scene are checked before."""
     from scenes import load
     from sim.atomic_file import check_writable, write_whole
+    from sim.commands.sensor_output import check_sensor_files, write_readings
     from sim.settings import RenderSettings
 
     start = time.perf_counter()
@@ -104,6 +108,15 @@ def run(arguments: argparse.Namespace) -> None:
         _draw_photons(scene, settings, arguments.png or Path(f"{scene.source_name}.photons.png"))
         return
     exr_path = arguments.output or Path(f"{scene.source_name}.exr")
+    check_sensor_files(scene, exr_path)
+    pictured = arguments.png is not None or arguments.error_map is not None
+    if scene.sensors and scene.camera is None and not pictured:
+        measurement = _measured(scene, settings)
+        write_readings(scene, measurement.sensors, exr_path)
+        if arguments.verbose:
+            _print_books(measurement.energy)
+            _print_timings(measurement.timings, time.perf_counter() - start)
+        return
     png_path = arguments.png or exr_path.with_suffix(".png")
     check_writable(exr_path)
     check_writable(png_path)
@@ -118,8 +131,9 @@ def run(arguments: argparse.Namespace) -> None:
     height, width, bands = picture.spectral_radiance.shape
     print(f"{exr_path} and {png_path}: {width} × {height}, {bands} bands, {seconds:.1f} s")
     print(_accuracy_text(picture))
+    write_readings(scene, picture.sensors, exr_path)
     if arguments.verbose:
-        _print_books(picture)
+        _print_books(picture.energy)
         _print_timings(picture.timings, seconds)
 
 
@@ -160,6 +174,21 @@ def _rendered(
         return run_interruptibly(functools.partial(work, progress))
 
 
+def _measured(scene: Scene, settings: RenderSettings) -> Measurement:
+    """What the sensors measure, without a picture."""
+    from sim.interruption import run_interruptibly
+    from sim.progress import ProgressCallback
+    from sim.progress_display import progress_display
+
+    def work(progress: ProgressCallback) -> Measurement:
+        from sim.measure import measure
+
+        return measure(scene, settings, progress=progress)
+
+    with progress_display(sys.stderr) as progress:
+        return run_interruptibly(functools.partial(work, progress))
+
+
 def _draw_error_map(picture: Picture, path: Path) -> None:
     from sim.error_map import plot_error_map
     from sim.figure_file import save_figure
@@ -178,14 +207,14 @@ def _accuracy_text(picture: Picture) -> str:
     )
 
 
-def _print_books(picture: Picture) -> None:
+def _print_books(energy: EnergyBooks) -> None:
     """Where the emitted flux went, in watts and as a share."""
-    books = dataclasses.asdict(picture.energy)
+    books = dataclasses.asdict(energy)
     print("energy")
     for name, flux in books.items():
-        share = flux / picture.energy.emitted if picture.energy.emitted else math.nan
+        share = flux / energy.emitted if energy.emitted else math.nan
         print(f"  {name:<14}{flux:14.9g} W {share:9.3%}")
-    print(f"  {'residual':<14}{picture.energy.residual:14.3g} of the emitted")
+    print(f"  {'residual':<14}{energy.residual:14.3g} of the emitted")
 
 
 def _print_timings(timings: dict[str, float], seconds: float) -> None:

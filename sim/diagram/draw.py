@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from scenes.emitters import LocalEmitter
 from scenes.materials import Dielectric
 from scenes.shapes import Plane
 from sim.diagram.outlines import emitter_outline, shape_outline
@@ -26,6 +27,7 @@ _BACKGROUND = "#14161a"
 _FOREGROUND = "#c8ccd4"
 _GLASS = "#8fb4d8"
 _LAMP = "#ffd27f"
+_SENSOR = "#9fd8a0"
 _LONGEST_SIDE_IN = 10.0
 _DPI = 150
 _RAY_WIDTH_PT = 0.9
@@ -40,7 +42,7 @@ def draw_rays(scene: Scene, paths: Sequence[DrawnPath], *, view: str | None = No
     """Draw a ray diagram.
 
     Args:
-        scene: Its surfaces are outlined, and its lamps.
+        scene: Its surfaces are outlined, its sensors dashed, and its lamps.
         paths: The paths.
         view: "xy", "xz" or "yz"; None: the view along the paths' direction of least spread.
 
@@ -63,6 +65,7 @@ def draw_rays(scene: Scene, paths: Sequence[DrawnPath], *, view: str | None = No
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     _draw_surfaces(axes, scene, chosen)
+    _draw_sensors(axes, scene, chosen)
     reach = 2.0 * float(width + height)
     _draw_planes(axes, scene, chosen, reach)
     resolution = _RAY_WIDTH_PT / _POINTS_PER_INCH / scale
@@ -84,7 +87,8 @@ def _limits(
     curves = [shape_outline(item.shape, toward) for item in scene.objects if item.shape.is_closed]
     solids = [curve for curve in curves if curve is not None]
     starts = [path.points[:1] for path in paths]
-    starts = starts or [np.array([emitter.position]) for emitter in scene.emitters]
+    near = [one for one in scene.emitters if isinstance(one, LocalEmitter)]
+    starts = starts or [np.array([emitter.position]) for emitter in near]
     core = view.project(np.concatenate([*solids, *starts, np.empty((0, 3))]))
     if len(core) == 0:
         return np.array([-1.0, -1.0]), np.array([1.0, 1.0])
@@ -95,6 +99,18 @@ def _limits(
     low, high = seen.min(axis=0), seen.max(axis=0)
     margin = _MARGIN * float((high - low).max()) or 1.0
     return low - margin, high + margin
+
+
+def _draw_sensors(axes: Axes, scene: Scene, view: View) -> None:
+    from matplotlib.patches import Polygon
+
+    for sensor in scene.sensors:
+        outline = shape_outline(sensor.shape, view.toward_viewer)
+        if outline is not None:
+            corners = view.project(outline)
+            axes.add_patch(
+                Polygon(corners, facecolor="none", edgecolor=_SENSOR, linewidth=1.0, linestyle="--")
+            )
 
 
 def _draw_surfaces(axes: Axes, scene: Scene, view: View) -> None:
@@ -135,6 +151,8 @@ def _draw_lamps(axes: Axes, scene: Scene, view: View) -> None:
     from matplotlib.patches import Polygon
 
     for emitter in scene.emitters:
+        if not isinstance(emitter, LocalEmitter):
+            continue  # what is infinitely far away has no place in the diagram
         outline = emitter_outline(emitter, view.toward_viewer)
         if outline is None:
             x, y = view.project(np.array(emitter.position))

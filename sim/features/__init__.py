@@ -5,11 +5,13 @@ by them; `flags` is what kernels ask.
 """
 
 import sim.features.arithmetic
+import sim.features.camera
 import sim.features.lamps
 import sim.features.light
 import sim.features.matter
 import sim.features.media
 import sim.features.polarised
+import sim.features.sensors
 import sim.features.shapes  # noqa: F401 (importing registers)
 from sim.features.flags import Features, LightMode
 from sim.features.plan import Decision, FeaturePlan, find_features, judge_features, plan_features

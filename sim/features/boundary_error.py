@@ -58,10 +58,11 @@ def path_error(eta: float, variation: float) -> float:
 
 
 def relative_variations(subject: Subject) -> list[tuple[float, float]] | None:
-    """(η, Δ) of each medium but the ambient one, against that, over the film's range.
+    """(η, Δ) of each two media that can meet, over the film's range.
 
-    η is the one with the least contrast, Δ never less than rounding. None where an index has no
-    value in a part of the film's range: nothing is known then.
+    Each medium meets the ambient one; where solids may touch, any other one too. η is the value of
+    least contrast, Δ never less than rounding. None where an index has no value in a part of the
+    film's range: nothing is known then.
     """
     edges_nm = subject.scene.film.edges_nm
     wavelength_nm = np.linspace(edges_nm[0], edges_nm[-1], _SAMPLES)
@@ -79,8 +80,10 @@ def relative_variations(subject: Subject) -> list[tuple[float, float]] | None:
     except SpectraError:
         return None
     found = []
-    for index in indices[1:] or indices:
-        eta = index / indices[0]
+    others = len(indices) if subject.near_pairs else 1
+    pairs = [(i, j) for i in range(others) for j in range(i + 1, len(indices))]
+    for i, j in pairs or [(0, 0)]:
+        eta = indices[j] / indices[i]
         variation = float(np.max(eta) / np.min(eta) - 1.0) + _ROUNDING
         crosses = np.min(eta) <= 1.0 <= np.max(eta)
         least = 1.0 if crosses else float(eta[np.argmin(np.abs(np.log(eta)))])

@@ -36,6 +36,12 @@ class Features:
         undispersed_photons: photons that no dispersion has touched can be in the map.
         direct_light: shadow rays find what comes straight from the lamps.
         beams, sphere_lamps, rectangle_lamps: which extended lamps shadow rays can lead to.
+        sensors: there are sensors that light can cross.
+        distant_lamps: some light comes from infinitely far away.
+        masks: some lamp or beam has a mask.
+        thin_lens: the camera has an aperture.
+        pixel_filter: pixels are more than their squares.
+        visible_lamps: camera paths can meet a lamp.
         media_count: how many media there are, the ambient one among them. A size, no feature.
         method: how light is followed. A choice of the caller's, no feature.
     """
@@ -65,6 +71,12 @@ class Features:
     beams: bool = True
     sphere_lamps: bool = True
     rectangle_lamps: bool = True
+    sensors: bool = True
+    distant_lamps: bool = True
+    masks: bool = True
+    thin_lens: bool = True
+    pixel_filter: bool = True
+    visible_lamps: bool = True
     media_count: int = 1
     method: Method = DEFAULT_METHOD
 

@@ -1,8 +1,9 @@
-"""Features: the lamps that shadow rays can lead to."""
+"""Features: the lamps that there are, and that shadow rays can lead to."""
 
 from collections.abc import Callable
 
 import scenes
+from scenes.emitters import DistantEmitter, has_mask
 from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
 
 __all__: list[str] = []
@@ -45,4 +46,32 @@ register(Feature(
     flag="rectangle_lamps",
     cost=Cost(0.99, "ball"),
     kernel="camera",
+))  # fmt: skip
+
+
+def _judge_distant(subject: Subject) -> Verdict:
+    count = sum(isinstance(one, DistantEmitter) for one in subject.scene.emitters)
+    if count == 0:
+        return null("no light from afar")
+    return needed(f"{count} of the emitters {'is' if count == 1 else 'are'} infinitely far away")
+
+
+register(Feature(
+    name="distant lamps",
+    what="photons along lines through the scene, shadow rays to the sun and the sky",
+    judge=_judge_distant,
+    flag="distant_lamps",
+))  # fmt: skip
+
+
+def _judge_masks(subject: Subject) -> Verdict:
+    count = sum(has_mask(one) for one in subject.scene.emitters)
+    return needed(f"masks: {count}") if count else null("no mask")
+
+
+register(Feature(
+    name="masks",
+    what="lamps and beams that shine through a mask, cell by cell",
+    judge=_judge_masks,
+    flag="masks",
 ))  # fmt: skip

@@ -148,8 +148,8 @@ def _judge_interreflection(subject: Subject) -> Verdict:
     )
     shapes = [one.shape for one in subject.scene.objects]
     alone = len(shapes) == 1 and isinstance(shapes[0], Rectangle | Disk | Plane)
-    if largest == 0.0 or alone:
-        return null("no diffuse surface can light another, or itself")
+    if largest == 0.0 or (alone and not subject.scene.sensors):
+        return null("no diffuse surface can light another, itself, or a sensor")
     if subject.bounces == 0:
         return Verdict("bounces = 0: diffuse surfaces do not light one another", 1.0, chosen=True)
     return needed(f"{len(diffuse)} diffuse surfaces, reflectance up to {largest:.2g}")

@@ -102,6 +102,18 @@ def meets_triangle(triangle: Any, origin: Any, across: Any, up: Any, rounding: A
 
 
 @wp.func
+def reaches_ahead(triangle: Any, origin: Any, ahead: Any, slack: Any):
+    """Whether a triangle right at the start is in the way, not the other side of an edge.
+
+    It is where it lies ahead of the face that the ray has left.
+    """
+    a = wp.dot(triangle.a - origin, ahead)
+    b = wp.dot(triangle.b - origin, ahead)
+    c = wp.dot(triangle.c - origin, ahead)
+    return wp.max(a, wp.max(b, c)) > slack
+
+
+@wp.func
 def intersect_mesh(
     meshes: Any, mesh: Any, origin: Any, direction: Any, leaving_face: int, t_high: Any
 ):
@@ -118,10 +130,13 @@ def intersect_mesh(
     zero = type(t_high)(0.0)
     t_low = zero
     way = int(0)  # 1: only outward through the surface, −1: only inward
+    ahead = type(direction)()  # the side of the face just left that the ray is on
     if leaving_face >= 0 and mesh.closed == 1:
-        way = wp.where(
-            wp.dot(direction, area_vector(meshes.triangles[leaving_face])) < zero, 1, -1
-        )
+        way = -1
+        ahead = facet_normal(meshes, leaving_face)
+        if wp.dot(direction, ahead) < zero:
+            way = 1
+            ahead = -ahead
         # By rounding, a start on an edge can lie a hair beyond the next triangle: it is there.
         t_low = -mesh.slack
     inverses = type(origin)(
@@ -170,8 +185,10 @@ def intersect_mesh(
                     if approach != zero and (way == 0 or (approach > zero) == (way == 1)):
                         t = wp.dot(triangle.a - origin, normal) / approach
                         if t >= t_low and t < nearest:
-                            nearest = t
-                            face = triangle.face
+                            near_by = way != 0 and t <= mesh.slack
+                            if not near_by or reaches_ahead(triangle, origin, ahead, mesh.slack):
+                                nearest = t
+                                face = triangle.face
                 row += 1
         node = -1
         if depth > 0:

@@ -27,6 +27,7 @@ from sim.features import Features
 from sim.image.camera import make_camera_functions, make_camera_struct
 from sim.image.gather import make_gather
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
+from sim.image.visible_lamps import make_see_lamps
 from sim.polarised_light import make_light
 from sim.sampling.counter import hash64
 from sim.sampling.kronecker import r1_point, r2_point
@@ -81,7 +82,8 @@ def make_render_camera(precision: str, features: Features) -> Any:
     scene_type, ray_type = transport.Scene, transport.Ray
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
-    look = make_camera_functions(precision)
+    seeing = make_camera_functions(precision, features)
+    look_through, place_in_pixel = seeing.look_through, seeing.place_in_pixel
     losses = features.absorption or features.finishes or features.polarisers
     mode = features.light_of("camera")
     polarised = mode != "averaged"
@@ -89,6 +91,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
     light_type, frame_type, natural = carried.Light, carried.Frame, carried.natural
     turn, judge, send = carried.turn, carried.judge, carried.send
     gather = make_gather(precision, features)
+    see_lamps = make_see_lamps(precision, features)
 
     @wp.func
     def follow(
@@ -103,9 +106,9 @@ def make_render_camera(precision: str, features: Features) -> Any:
         stack_ray = wp.zeros(shape=(8,), dtype=ray_type)
         stack_throughput = wp.zeros(shape=(8,), dtype=real)
         stack_dispersed = wp.zeros(shape=(8,), dtype=int)
+        # What the eye is sensitive to, of the light that comes against the path: all alike.
+        light, frame = natural(camera_ray.direction)
         if wp.static(polarised):
-            # What the eye is sensitive to, of the light that comes against the path: all alike.
-            light, frame = natural(camera_ray.direction)
             stack_light = wp.zeros(shape=(8,), dtype=light_type)
             stack_frame = wp.zeros(shape=(8,), dtype=frame_type)
         depth = int(0)
@@ -136,6 +139,13 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 dispersed = stack_dispersed[depth]
                 alive = bool(True)
             met = interact(scene, ray, indices)
+            if wp.static(features.visible_lamps):
+                parted = int(dispersed)
+                if wp.static(features.absorption):
+                    parted = parted | scene.media[met.medium].tints
+                if (sight.band == ALL_BANDS) != (parted == 1):
+                    scale = throughput / lights.receivers.band_width_nm
+                    see_lamps(lights, ray, met, sight, scale, light, frame, sample)
             if wp.static(polarised):
                 if met.event == EVENT_BOUNDARY:
                     light, frame = turn(scene, met, ray.direction, light, frame)
@@ -209,13 +219,16 @@ def make_render_camera(precision: str, features: Features) -> Any:
         # Spread over the turns of a round, and drawn anew for the next one: rounds are replicates.
         key = hash64(hash64(film.key, wp.uint64(pixel)), wp.uint64(film.round))
         turn = wp.uint32(film.turn)
-        x, y = r2_point(key, turn, receivers.band_width_nm)
+        ux, uy = r2_point(key, turn, receivers.band_width_nm)
+        x, y = place_in_pixel(camera, ux, uy)
         inside_band = r1_point(key + wp.uint64(1), turn, receivers.band_width_nm)
-        ray = ray_type()
-        ray.origin = camera.position
-        ray.direction = look(
-            camera, real(pixel % camera.width) + x, real(pixel // camera.width) + y
+        u0, u1 = r2_point(key + wp.uint64(4), turn, receivers.band_width_nm)
+        origin, direction = look_through(
+            camera, real(pixel % camera.width) + x, real(pixel // camera.width) + y, u0, u1
         )
+        ray = ray_type()
+        ray.origin = origin
+        ray.direction = direction
         ray.prim = -1
         ray.face = -1
         ray.prim2 = -1

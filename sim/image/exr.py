@@ -25,7 +25,7 @@ from spectra.units import LUMINOUS_EFFICACY_LM_W
 if TYPE_CHECKING:
     from sim.image.picture import Picture
 
-__all__ = ["encode_exr"]
+__all__ = ["encode_channels", "encode_exr", "exr_plane", "rounded_to_8_bits"]
 
 # x and y of red, green, blue and white (IEC 61966-2-1, table 1), as OpenEXR's own attribute.
 _SRGB_CHROMATICITIES = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)
@@ -45,48 +45,74 @@ def encode_exr(picture: Picture, *, exposure_stops: float | None = None) -> memo
     Returns:
         The content of the file.
     """
+    stops = picture.exposure_stops if exposure_stops is None else exposure_stops
+    return encode_channels(
+        _channels(picture),
+        _reproducing_attributes(picture),
+        units=EMISSIVE_UNITS,
+        exposure_stops=stops,
+    )
+
+
+def encode_channels(
+    channels: dict[str, NDArray[np.float32]],
+    attributes: dict[str, str],
+    *,
+    units: str,
+    exposure_stops: float,
+) -> memoryview:
+    """Encode channels as a spectral EXR.
+
+    Args:
+        channels: Their pixels by name, as `exr_plane` gives them.
+        attributes: What else the file says, by name.
+        units: Unit of the spectral channels.
+        exposure_stops: Value of ``EV`` [stops].
+
+    Returns:
+        The content of the file.
+    """
     import OpenEXR
 
-    stops = picture.exposure_stops if exposure_stops is None else exposure_stops
     header = {
         # Lossless, and known to every reader. On spectra with noise it takes 60 % of the time of
         # ZIP, and 85 % of the room.
         "compression": OpenEXR.PIZ_COMPRESSION,
         "type": OpenEXR.scanlineimage,
         "spectralLayoutVersion": LAYOUT_VERSION,
-        "emissiveUnits": EMISSIVE_UNITS,
-        "EV": float(stops),
+        "emissiveUnits": units,
+        "EV": float(exposure_stops),
         "whiteLuminance": LUMINOUS_EFFICACY_LM_W,
         "chromaticities": _SRGB_CHROMATICITIES,
-        **_reproducing_attributes(picture),
+        **attributes,
     }
     # Into memory: on a full disk the library raises nothing and leaves an empty file.
     buffer = io.BytesIO()
-    with OpenEXR.File(header, _channels(picture)) as file:
+    with OpenEXR.File(header, channels) as file:
         file.write(buffer)
     return buffer.getbuffer()
 
 
 def _channels(picture: Picture) -> dict[str, NDArray[np.float32]]:
-    channels = {name: _plane(picture.linear_rgb[..., i]) for i, name in enumerate("RGB")}
+    channels = {name: exr_plane(picture.linear_rgb[..., i]) for i, name in enumerate("RGB")}
     has_error = not np.isnan(picture.standard_error).all()
     for band, wavelength_nm in enumerate(picture.wavelengths_nm.tolist()):
-        channels[radiance_channel(wavelength_nm)] = _plane(picture.spectral_radiance[..., band])
+        channels[radiance_channel(wavelength_nm)] = exr_plane(picture.spectral_radiance[..., band])
         if has_error:
-            error = _plane(picture.standard_error[..., band])
-            channels[error_channel(wavelength_nm)] = _rounded_to_8_bits(error)
+            error = exr_plane(picture.standard_error[..., band])
+            channels[error_channel(wavelength_nm)] = rounded_to_8_bits(error)
     if has_error:
         for name, channel in ACCURACY_CHANNELS.items():
-            channels[channel] = _rounded_to_8_bits(_plane(getattr(picture.accuracy, name)))
+            channels[channel] = rounded_to_8_bits(exr_plane(getattr(picture.accuracy, name)))
     return channels
 
 
-def _plane(values: NDArray[np.float64]) -> NDArray[np.float32]:
+def exr_plane(values: NDArray[np.float64]) -> NDArray[np.float32]:
     """One channel, contiguous: OpenEXR writes wrong pixels from other arrays, silently."""
     return np.ascontiguousarray(values, dtype=np.float32)
 
 
-def _rounded_to_8_bits(values: NDArray[np.float32]) -> NDArray[np.float32]:
+def rounded_to_8_bits(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Round the significand to 8 bits, within 0.4 %: plenty for an error bar, half the size."""
     half_a_step, kept = np.uint32(0x8000), np.uint32(0xFFFF0000)
     return ((values.view(np.uint32) + half_a_step) & kept).view(np.float32)

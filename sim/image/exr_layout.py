@@ -19,6 +19,8 @@ __all__ = [
     "ATTRIBUTE_PREFIX",
     "BAND_MEANS",
     "EMISSIVE_UNITS",
+    "IRRADIANCE_BAND_MEANS",
+    "IRRADIANCE_UNITS",
     "LAYOUT_VERSION",
     "error_channel",
     "error_wavelength_nm",
@@ -29,6 +31,9 @@ __all__ = [
 LAYOUT_VERSION: Final = "1.0"
 EMISSIVE_UNITS: Final = "W.m^-2.sr^-1"
 BAND_MEANS: Final = "band means, W m^-2 sr^-1 nm^-1"
+IRRADIANCE_UNITS: Final = "W.m^-2.nm^-1"
+IRRADIANCE_BAND_MEANS: Final = "band means of irradiance, W m^-2 nm^-1"
+"""What files of sensors have in the place of `EMISSIVE_UNITS` and `BAND_MEANS`."""
 ATTRIBUTE_PREFIX: Final = "nephroid_"
 ACCURACY_CHANNELS: Final = {"noise": "luminance.noise", "bias": "luminance.bias"}
 """Channels of the luminance's standard error and of its estimated bias [cd/m²]."""

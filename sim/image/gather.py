@@ -21,6 +21,8 @@ import warp as wp
 from sim.features import Features
 from sim.geometry.extent import distance_to_circle, distance_to_planes, distance_to_sides
 from sim.geometry.flat import plane_coordinates
+from sim.geometry.mesh import facet_normal
+from sim.geometry.mesh_extent import distance_on_mesh
 from sim.image.direct_light import make_direct_light
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
 from sim.photons.photon_map import make_map_structs
@@ -28,7 +30,7 @@ from sim.photons.photon_structs import surface_key
 from sim.photons.receivers import DEALS, make_receiver_structs
 from sim.precision import precision_types
 from sim.sampling.directions import to_world
-from sim.scene_structs import SHAPE_FLAT, SHAPE_POLYHEDRON, make_scene_structs
+from sim.scene_structs import SHAPE_FLAT, SHAPE_MESH, SHAPE_POLYHEDRON, make_scene_structs
 
 __all__ = ["make_gather"]
 
@@ -65,11 +67,16 @@ def make_kernel_integral(precision: str, features: Features) -> object:
                     if other != met.face:
                         plane = scene.planes[other]
                         distance = wp.min(distance, plane.offset - wp.dot(plane.normal, point))
+        if wp.static(features.meshes):
+            if body.shape == SHAPE_MESH:
+                distance = scene.meshes.borders[met.face].clearance
         return distance
 
     @wp.func
-    def reach(scene: scene_type, met: interaction_type, cos_phi: real, sin_phi: real):
-        """Distance to the receiver's edge in a tangent direction, infinite where it has none."""
+    def reach(
+        scene: scene_type, met: interaction_type, cos_phi: real, sin_phi: real, radius: real
+    ):
+        """Distance to the receiver's edge in a tangent direction; far if not within `radius`."""
         body = scene.bodies[met.prim]
         distance = real(wp.inf)
         if wp.static(features.flats):
@@ -87,6 +94,15 @@ def make_kernel_integral(precision: str, features: Features) -> object:
                     to_world(cos_phi, sin_phi, real(0.0), met.normal),
                     scene.planes, solid.first, solid.count, met.face,
                 )
+        if wp.static(features.meshes):
+            if body.shape == SHAPE_MESH:
+                distance = distance_on_mesh(
+                    scene.meshes, met.face, met.point - scene.meshes.rows[body.row].centre,
+                    to_world(
+                        cos_phi, sin_phi, real(0.0), facet_normal(scene.meshes, met.face)
+                    ),
+                    radius,
+                )
         return distance
 
     @wp.func
@@ -98,7 +114,7 @@ def make_kernel_integral(precision: str, features: Features) -> object:
         step = real(wp.static(2.0 * math.pi / EDGE_DIRECTIONS))
         for k in range(wp.static(EDGE_DIRECTIONS)):
             phi = step * (real(k) + real(0.5))
-            rho = wp.min(reach(scene, met, wp.cos(phi), wp.sin(phi)), radius)
+            rho = wp.min(reach(scene, met, wp.cos(phi), wp.sin(phi), radius), radius)
             x = rho * rho / (radius * radius)
             total += (x - real(0.5) * x * x) / real(PI) * step
         return wp.max(total, real(1e-3))

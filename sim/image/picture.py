@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.atomic_file import write_whole
-from sim.image.exposure import automatic_stops
+from sim.image.exposure import automatic_stops, lamp_level, scene_stops
 from sim.image.exr import encode_exr
 from sim.image.png import encode_png
 from spectra.observer import observer
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from scenes import Scene
     from sim.image.accuracy import Accuracy
     from sim.photons.energy import EnergyBooks
+    from sim.sensors.readings import Readings
     from sim.settings import ResolvedSettings
 
 __all__ = ["Picture"]
@@ -41,6 +42,7 @@ class Picture:
         energy: Where the emitted flux went [W].
         scene: The scene that was rendered.
         settings: The settings that render it again, resolved: with the passes that there were.
+        sensors: What the scene's sensors have measured, by their names.
         stopping: Why there were no more: "all passes", "target error" or "time budget".
         timings: Seconds that each stage took.
         features: What the kernels could do and could not, and what that can cost, ready for JSON.
@@ -53,6 +55,7 @@ class Picture:
     energy: EnergyBooks
     scene: Scene
     settings: ResolvedSettings
+    sensors: Readings = field(default_factory=dict)
     stopping: str = "all passes"
     timings: dict[str, float] = field(default_factory=dict)
     features: dict[str, Any] = field(default_factory=dict)
@@ -78,12 +81,14 @@ class Picture:
 
     @cached_property
     def exposure_stops(self) -> float:
-        """The film's exposure [stops]; automatic when the scene leaves it open.
+        """The film's or the camera's exposure [stops]; automatic when the scene leaves it open.
 
         At e stops a white of 683 · 2⁻ᵉ cd/m² is developed to full white.
         """
-        stops = self.scene.film.exposure_stops
-        return automatic_stops(self.linear_rgb) if stops is None else float(stops)
+        stops = scene_stops(self.scene)
+        if stops is None:
+            return automatic_stops(self.linear_rgb, lamp_level(self.scene))
+        return stops
 
     @cached_property
     def srgb(self) -> NDArray[np.uint8]:

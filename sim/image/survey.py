@@ -32,7 +32,8 @@ def make_measure_footprints(precision: str, features: Features) -> Any:
     real, vec3, interact = transport.real, transport.vec3, transport.interact
     media_indices = transport.media_indices
     scene_type, ray_type = transport.Scene, transport.Ray
-    camera_type, look = make_camera_struct(precision), make_camera_functions(precision)
+    camera_type = make_camera_struct(precision)
+    look = make_camera_functions(precision, features).look
 
     @wp.kernel(module="unique", enable_backward=False)
     def measure_footprints(

@@ -32,6 +32,7 @@ __all__ = [
     "conductor_matrix",
     "frame_across",
     "fresnel_amplitudes",
+    "seen_part",
     "share_of_flux",
     "total_reflection_phase",
     "turn_frame",
@@ -155,6 +156,27 @@ def turn_frame(light: Any, s: Any, direction: Any, normal: Any):
     length2 = wp.dot(turned, turned)
     turned *= type(a)(1.5) - type(a)(0.5) * length2
     return type(light)(q, u, light[2]), turned
+
+
+@wp.func
+def seen_part(eye: Any, eye_s: Any, light: Any, light_s: Any, direction: Any):
+    """1 + the product of sensitivity and Stokes vector: what an eye sees of light, over natural.
+
+    Args:
+        eye: what a camera path carries.
+        eye_s: its frame.
+        light: (q, u, v) of light that comes against the path.
+        light_s: its frame.
+        direction: of the path; the light goes the other way.
+    """
+    cosine = wp.dot(eye_s, light_s)
+    sine = -wp.dot(eye_s, wp.cross(direction, light_s))  # along the light's own p = −d × s
+    cos_2phi = cosine * cosine - sine * sine
+    sin_2phi = (cosine + cosine) * sine
+    q = light[0] * cos_2phi + light[1] * sin_2phi
+    u = light[1] * cos_2phi - light[0] * sin_2phi
+    # About its own direction, the path's u and v have the other sign.
+    return type(cosine)(1.0) + eye[0] * q - eye[1] * u - eye[2] * light[2]
 
 
 @wp.func

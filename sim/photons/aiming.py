@@ -1,4 +1,4 @@
-"""What a lamp's photons are aimed at: specular objects, and receivers where they are seen.
+"""What a lamp's photons are aimed at: specular objects, sensors, and receivers where they are seen.
 
 Aiming divides effort, not light: the balance heuristic of `sim.photons.emission` makes every
 choice here give the same expected picture. A lens of 12.7 mm half a metre from a lamp fills
@@ -12,10 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 import scenes
+from scenes.emitters import DistantEmitter
 from sim.photons.lamp_structs import AIM_AREA, AIM_BASE, AIM_CELLS, AIM_CONE
 from sim.scene_data import CompiledScene
+from sim.sensors.frames import sensor_frame, sensor_half
 
-__all__ = ["Aim", "Guide", "View", "cells_to_distribution", "plan_photons"]
+__all__ = ["Aim", "Guide", "View", "aim_at_sensors", "cells_to_distribution", "plan_photons"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -32,6 +34,9 @@ what the camera barely sees may still be somebody's measurement."""
 UNIFORM_PART = 0.2
 """Part of a receiver's photons spread over all of it; the rest goes where the camera looks."""
 
+
+SENSOR_SHARE = 0.4
+"""Share of a lamp's photons aimed at sensors where the others serve a picture."""
 
 EQUAL_SHARE = 0.4
 """Share of the photons that is divided equally among the emitters, whatever their flux, so that a
@@ -107,13 +112,15 @@ def plan_photons(
         view: what the camera sees of each object; None: no camera.
         direct: whether what comes straight from a lamp is worth photons; else only glass is.
     """
-    aimed = tuple(tuple(find_aims(compiled, emitter, view)) for emitter, _ in emitters)
+    aimed = tuple(
+        tuple(find_aims(compiled, emitter, view, sensors=direct)) for emitter, _ in emitters
+    )
     fluxes = [flux for _, flux in emitters]
     if compiled.features.method.aiming == "unaimed":
         return Guide(tuple(fluxes), aimed)
     if not direct:
         fluxes = [
-            flux * flux_to_glass(emitter, aims, compiled.to_local(emitter.position))
+            flux * flux_to_glass(compiled, emitter, aims)
             for (emitter, flux), aims in zip(emitters, aimed, strict=True)
         ]
     total = sum(fluxes) or 1.0
@@ -121,13 +128,43 @@ def plan_photons(
     return Guide(tuple(equal + (1.0 - EQUAL_SHARE) * flux / total for flux in fluxes), aimed)
 
 
-def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[Aim]:
+def aim_at_sensors(
+    compiled: CompiledScene, emitters: list[tuple[Any, float]], guide: Guide
+) -> Guide:
+    """Spare a part of the photons of a guide, made for a picture, for the scene's sensors.
+
+    Args:
+        compiled: the scene.
+        emitters: the lamps that shine, each with its flux [W].
+        guide: how photons are divided for the picture.
+    """
+    if not compiled.scene.sensors:
+        return guide
+    even = plan_photons(compiled, emitters, None, direct=True)
+    shares = [
+        (1.0 - SENSOR_SHARE) * share + SENSOR_SHARE * other
+        for share, other in zip(guide.shares, even.shares, strict=True)
+    ]
+    aims = []
+    for (emitter, _), old in zip(emitters, guide.aims, strict=True):
+        if isinstance(emitter, scenes.Beam):
+            aims.append(old)  # aims itself
+            continue
+        total = sum(aim.share for aim in old) / (1.0 - SENSOR_SHARE)
+        aims.append((*old, *_sensors(compiled, SENSOR_SHARE * total)))
+    return Guide(tuple(shares), tuple(aims))
+
+
+def find_aims(
+    compiled: CompiledScene, emitter: Any, view: View | None, *, sensors: bool = True
+) -> list[Aim]:
     """Everything worth aiming at, the lamp's own distribution first.
 
     Args:
         compiled: the scene.
         emitter: one of its emitters.
         view: what the camera sees of each object; None: no camera.
+        sensors: whether sensors are worth it.
     """
     if isinstance(emitter, scenes.Beam) or compiled.features.method.aiming == "unaimed":
         return [_base(1.0)]
@@ -136,13 +173,16 @@ def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[
     found = list(enumerate(compiled.scene.objects))
     # A plane without end cannot be aimed at.
     finite = [(prim, one) for prim, one in found if not isinstance(one.shape, scenes.Plane)]
+    measures = sensors and len(compiled.scene.sensors) > 0
+    # Without a camera receivers are all there is to see, unless there are sensors.
+    unseen = SMALLEST_WEIGHT if measures else 1.0
     specular = [one for _, one in finite if scenes.is_specular(one.material)]
     receivers = [
-        (prim, one, 1.0 if view is None else max(view.fraction(prim), SMALLEST_WEIGHT))
+        (prim, one, unseen if view is None else max(view.fraction(prim), SMALLEST_WEIGHT))
         for prim, one in finite
         if isinstance(one.material, scenes.Lambertian)
     ]
-    total = sum(weight for _, _, weight in receivers)
+    total = sum(weight for _, _, weight in receivers) + float(measures)
     aims = [_base(1.0 - SPECULAR_SHARE - RECEIVER_SHARE)]
     aims += [_cone(SPECULAR_SHARE / len(specular), compiled, one, margin) for one in specular]
     for prim, one, weight in receivers:
@@ -151,22 +191,25 @@ def find_aims(compiled: CompiledScene, emitter: Any, view: View | None) -> list[
             aims.append(_area(share, compiled, prim, view))
         else:
             aims.append(_cone(share, compiled, one, margin))
-    return aims
+    return aims + (_sensors(compiled, RECEIVER_SHARE / total) if measures else [])
 
 
-def flux_to_glass(emitter: Any, aims: tuple[Aim, ...], centre: FloatArray) -> float:
+def flux_to_glass(compiled: CompiledScene, emitter: Any, aims: tuple[Aim, ...]) -> float:
     """About how much of a lamp's flux meets glass that can be aimed at, as a fraction.
 
     Args:
+        compiled: the scene.
         emitter: the lamp.
         aims: what its photons are aimed at.
-        centre: (3,) where the lamp is, in the local frame [m].
     """
     if isinstance(emitter, scenes.Beam):
         return 1.0
     total = 0.0
     for aim in (one for one in aims if one.specular):
-        offset = aim.centre - centre
+        if isinstance(emitter, DistantEmitter):
+            total += (aim.radius / compiled.bounding_radius) ** 2
+            continue
+        offset = aim.centre - compiled.to_local(emitter.position)
         distance = max(float(np.linalg.norm(offset)), aim.radius)
         part = 0.5 * (1.0 - np.sqrt(1.0 - (aim.radius / distance) ** 2))  # Ω/4π of its cone
         if isinstance(emitter, scenes.RectangleLamp):
@@ -212,6 +255,19 @@ def _area(share: float, compiled: CompiledScene, prim: int, view: View | None) -
             density = UNIFORM_PART * density + (1.0 - UNIFORM_PART) * seen / seen.sum()
     distribution = cells_to_distribution(density)
     return Aim(share, int(AIM_AREA), centre, frame, half, 0.0, False, distribution)
+
+
+def _sensors(compiled: CompiledScene, share: float) -> list[Aim]:
+    """The scene's sensors, all parts of each alike; a disk by the square around it."""
+    even = cells_to_distribution(np.full((int(AIM_CELLS), int(AIM_CELLS)), 1.0 / AIM_CELLS**2))
+    return [
+        Aim(
+            share / len(compiled.scene.sensors), int(AIM_AREA),
+            compiled.to_local(sensor.shape.position), sensor_frame(sensor), sensor_half(sensor),
+            0.0, False, even,
+        )
+        for sensor in compiled.scene.sensors
+    ]
 
 
 def cells_to_distribution(density: FloatArray) -> FloatArray:

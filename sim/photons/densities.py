@@ -1,7 +1,8 @@
 """With what density lamps and targets draw directions, device side.
 
 A density is per solid angle. For a spherical lamp it is relative to dω cosθ dA/(πR²), since a
-Lambertian sphere seen from any direction is a uniform disk; for any other lamp to dω dA/A.
+Lambertian sphere seen from any direction is a uniform disk; for any other lamp to dω dA/A. That
+of a distant lamp is per area across the line, see `sim.photons.distant`.
 """
 
 import functools
@@ -9,10 +10,12 @@ from types import SimpleNamespace
 
 import warp as wp
 
+from sim.photons.cells import make_cell_functions
+from sim.photons.distant import make_distant_functions
 from sim.photons.lamp_structs import (
     AIM_AREA,
-    AIM_CELLS,
     AIM_CONE,
+    DISTANT,
     RECTANGLE_LAMP,
     SPHERE_LAMP,
     SPOT,
@@ -20,77 +23,34 @@ from sim.photons.lamp_structs import (
 )
 from sim.sampling.directions import cone_solid_angle, cone_square, from_world
 
-__all__ = ["make_cell_functions", "make_density_functions"]
+__all__ = ["make_density_functions"]
 
 INV_PI = wp.constant(0.3183098861837907)
 INV_4PI = wp.constant(0.07957747154594767)
 
 
 @functools.cache
-def make_cell_functions(precision: str) -> SimpleNamespace:
-    """Device functions of distributions over cells: `invert_square`, `cell_density`."""
-    structs = make_lamp_structs(precision)
-    real = structs.real
+def make_density_functions(precision: str, *, distant: bool = True) -> SimpleNamespace:
+    """Device functions of solid-angle densities [1/sr], and of the cone around a target.
 
-    @wp.func
-    def locate(
-        cdf: wp.array(dtype=real), guide: wp.array(dtype=int), first: int, count: int, u: real
-    ):
-        """Which of `count` cells the distribution function reaches u in, and how far into it.
-
-        The guide names the cell for every multiple of 1/count, and the rest is a step or two
-        (Chen & Asau 1974): fewer unforeseeable branches than a bisection has.
-        """
-        cell = int(guide[first + int(u * real(count))])
-        while cdf[first + cell + 1] <= u:
-            cell += 1
-        low = cdf[first + cell]
-        return cell, (u - low) / (cdf[first + cell + 1] - low)
-
-    @wp.func
-    def invert_cells(cdf: wp.array(dtype=real), guide: wp.array(dtype=int), first: int, u: real):
-        """Cell, and coordinate in [0, 1) of the side, where the distribution reaches u."""
-        cell, inside = locate(cdf, guide, first, AIM_CELLS, u)
-        return cell, (real(cell) + inside) * real(wp.static(1.0 / AIM_CELLS))
-
-    @wp.func
-    def invert_square(
-        cdf: wp.array(dtype=real), guide: wp.array(dtype=int), first: int, u0: real, u1: real
-    ):
-        """Point of the unit square where the distribution reaches (u0, u1)."""
-        cell, s = invert_cells(cdf, guide, first, u0)
-        row = first + (cell + 1) * (AIM_CELLS + 1)
-        _j, t = invert_cells(cdf, guide, row, u1)
-        return s, t
-
-    @wp.func
-    def cell_density(cdf: wp.array(dtype=real), first: int, s: real, t: real):
-        """Density at (s, t) of the unit square, relative to a uniform one."""
-        cells = int(AIM_CELLS)
-        i = wp.clamp(int(s * real(wp.static(float(AIM_CELLS)))), 0, cells - 1)
-        j = wp.clamp(int(t * real(wp.static(float(AIM_CELLS)))), 0, cells - 1)
-        row = first + (i + 1) * (cells + 1)
-        along_u = cdf[first + i + 1] - cdf[first + i]
-        along_v = cdf[row + j + 1] - cdf[row + j]
-        return along_u * along_v * real(wp.static(float(AIM_CELLS * AIM_CELLS)))
-
-    return SimpleNamespace(
-        locate=locate, invert_square=invert_square, cell_density=cell_density
-    )
-
-
-@functools.cache
-def make_density_functions(precision: str) -> SimpleNamespace:
-    """Device functions of solid-angle densities [1/sr], and of the cone around a target."""
+    Args:
+        precision: of the numbers.
+        distant: whether there may be distant lamps.
+    """
     structs = make_lamp_structs(precision)
     real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
     cell_density = make_cell_functions(precision).cell_density
     emitter_type, target_type = structs.Emitter, structs.Target
+    from_afar = make_distant_functions(precision)
+    distant_density, square_of_line = from_afar.distant_density, from_afar.square_of_line
 
     @wp.func
     def own_density(emitter: emitter_type, direction: vec3):
         """Density of the lamp's own radiation over directions."""
         axis = emitter.frame[2]
+        if wp.static(distant):
+            if emitter.kind == DISTANT:
+                return real(INV_PI) / (emitter.radius * emitter.radius)
         if emitter.kind == RECTANGLE_LAMP:
             return wp.max(wp.dot(direction, axis), real(0.0)) * real(INV_PI)
         if emitter.kind == SPOT:
@@ -185,6 +145,9 @@ def make_density_functions(precision: str) -> SimpleNamespace:
         A spherical lamp's lines are counted per dω cosθ dA/(πR²); any other lamp's per dω dA/A.
         A direction that this very target has `drawn` is inside it, whatever rounding says.
         """
+        if wp.static(distant):
+            if emitter.kind == DISTANT:
+                return distant_density(lamps, emitter, target, origin, direction, drawn)
         if target.kind == AIM_CONE:
             anchor = origin
             if emitter.kind == SPHERE_LAMP:
@@ -194,10 +157,22 @@ def make_density_functions(precision: str) -> SimpleNamespace:
             return area_density(lamps, emitter, target, origin, direction, drawn)
         return own_density(emitter, direction)
 
+    @wp.func
+    def square_of_target(
+        emitter: emitter_type, target: target_type, origin: vec3, direction: vec3
+    ):
+        """The two numbers that a target around a sphere turns into this line."""
+        if wp.static(distant):
+            if emitter.kind == DISTANT:
+                return square_of_line(target, origin, direction)
+        if emitter.kind == SPHERE_LAMP:
+            return square_of_cone(target, emitter.centre, direction)
+        return square_of_cone(target, origin, direction)
+
     return SimpleNamespace(
         own_density=own_density,
         target_density=target_density,
         cone_of=cone_of,
         cone_axis=cone_axis,
-        square_of_cone=square_of_cone,
+        square_of_target=square_of_target,
     )

@@ -20,11 +20,15 @@ import functools
 
 import warp as wp
 
-from sim.photons.densities import make_cell_functions, make_density_functions
+from sim.features import Features
+from sim.photons.cells import make_cell_functions
+from sim.photons.densities import make_density_functions
+from sim.photons.distant import make_distant_functions
 from sim.photons.lamp_structs import (
     AIM_AREA,
     AIM_CONE,
     BEAM,
+    DISTANT,
     RECTANGLE_LAMP,
     SPHERE_LAMP,
     SPOT,
@@ -41,6 +45,8 @@ from sim.sampling.photon_numbers import make_photon_numbers
 from sim.scene_structs import make_ray_structs
 
 __all__ = ["make_emission", "make_wavelength_function"]
+
+EVERYTHING = Features()
 
 
 @functools.cache
@@ -69,12 +75,12 @@ def make_wavelength_function(precision: str) -> object:
 
 
 @functools.cache
-def make_direction_function(precision: str) -> object:
+def make_direction_function(precision: str, *, distant: bool) -> object:
     """Device function `sample_direction(emitter, target, origin, u0, u1)`, unit."""
     structs = make_lamp_structs(precision)
     real, vec3 = structs.real, structs.vec3
     emitter_type, target_type = structs.Emitter, structs.Target
-    densities = make_density_functions(precision)
+    densities = make_density_functions(precision, distant=distant)
     cone_of, cone_axis = densities.cone_of, densities.cone_axis
 
     @wp.func
@@ -101,8 +107,8 @@ def make_direction_function(precision: str) -> object:
 
 
 @functools.cache
-def make_line_function(precision: str) -> object:
-    """Device function `sample_line(emitter, target, u0, u1, u3, u4)`: (origin, direction).
+def make_line_function(precision: str, *, distant: bool, masks: bool) -> object:
+    """Device function `sample_line(lamps, emitter, target, u0, u1, u3, u4)`: (origin, direction).
 
     The first two numbers choose what is aimed at, the last two the point of the lamp. Points of
     a receiver are drawn before the lamp's, so that photons land as evenly as the numbers are.
@@ -110,7 +116,9 @@ def make_line_function(precision: str) -> object:
     structs = make_lamp_structs(precision)
     real, vec3 = structs.real, structs.vec3
     emitter_type, target_type = structs.Emitter, structs.Target
-    sample_direction = make_direction_function(precision)
+    sample_direction = make_direction_function(precision, distant=distant)
+    sample_distant = make_distant_functions(precision).sample_distant
+    through_mask, lamps_type = make_cell_functions(precision).through_mask, structs.Lamps
 
     @wp.func
     def point_of_sphere(emitter: emitter_type, way: vec3, u3: real, u4: real):
@@ -121,12 +129,21 @@ def make_line_function(precision: str) -> object:
 
     @wp.func
     def sample_line(
-        emitter: emitter_type, target: target_type, u0: real, u1: real, u3: real, u4: real
+        lamps: lamps_type, emitter: emitter_type, target: target_type, u0: real, u1: real,
+        u3: real, u4: real,
     ):
+        if wp.static(distant):
+            if emitter.kind == DISTANT:
+                return sample_distant(emitter, target, u0, u1, u3, u4)
         origin = emitter.centre
         if emitter.kind == RECTANGLE_LAMP:
-            origin += emitter.frame[0] * ((u3 + u3 - real(1.0)) * emitter.half_u)
-            origin += emitter.frame[1] * ((u4 + u4 - real(1.0)) * emitter.half_v)
+            s = u3
+            t = u4
+            if wp.static(masks):
+                if emitter.first_mask >= 0:
+                    s, t = through_mask(lamps.cdf, lamps.guide, emitter, u3, u4)
+            origin += emitter.frame[0] * ((s + s - real(1.0)) * emitter.half_u)
+            origin += emitter.frame[1] * ((t + t - real(1.0)) * emitter.half_v)
         if target.kind == AIM_AREA:
             point = target.centre + target.frame[0] * ((u0 + u0 - real(1.0)) * target.half_u)
             point += target.frame[1] * ((u1 + u1 - real(1.0)) * target.half_v)
@@ -145,12 +162,12 @@ def make_line_function(precision: str) -> object:
 
 
 @functools.cache
-def make_emission(precision: str, sampler: str = "sobol") -> object:
+def make_emission(precision: str, features: Features = EVERYTHING) -> object:
     """Device function `emit(lamps, emitter, target, seed_row, index, key)`.
 
     Args:
         precision: of rays and fluxes.
-        sampler: what photons are drawn from, see `sim.method`.
+        features: which lamps there may be, and what photons are drawn from.
 
     Returns:
         The function, which returns (Ray, u, flux [W]) of photon `index` of the sequence that
@@ -159,13 +176,15 @@ def make_emission(precision: str, sampler: str = "sobol") -> object:
     structs = make_lamp_structs(precision)
     real, lamps_type = structs.real, structs.Lamps
     ray_type = make_ray_structs(precision).Ray
-    densities = make_density_functions(precision)
+    distant = features.distant_lamps
+    densities = make_density_functions(precision, distant=distant)
     own_density, target_density = densities.own_density, densities.target_density
-    sample_direction = make_direction_function(precision)
-    sample_line = make_line_function(precision)
+    sample_direction = make_direction_function(precision, distant=distant)
+    sample_line = make_line_function(precision, distant=distant, masks=features.masks)
     cells = make_cell_functions(precision)
     invert_square, cell_density = cells.invert_square, cells.cell_density
-    photon_numbers = make_photon_numbers(precision, sampler)
+    through_mask = cells.through_mask
+    photon_numbers = make_photon_numbers(precision, features.method.sampler)
 
     @wp.func
     def emit(
@@ -190,8 +209,13 @@ def make_emission(precision: str, sampler: str = "sobol") -> object:
             if emitter.round == 1:
                 x, y = sample_disk(u0, u1)
             else:
-                x = u0 + u0 - real(1.0)
-                y = u1 + u1 - real(1.0)
+                s = u0
+                t = u1
+                if wp.static(features.masks):
+                    if emitter.first_mask >= 0:
+                        s, t = through_mask(lamps.cdf, lamps.guide, emitter, u0, u1)
+                x = s + s - real(1.0)
+                y = t + t - real(1.0)
             ray.origin = emitter.centre + emitter.frame[0] * (x * emitter.half_u)
             ray.origin += emitter.frame[1] * (y * emitter.half_v)
             ray.direction = sample_direction(emitter, target, ray.origin, u3, u4)
@@ -200,7 +224,7 @@ def make_emission(precision: str, sampler: str = "sobol") -> object:
                 flux_of_beam /= cell_density(lamps.cdf, target.first_cdf, u0, u1)
             return ray, u2, flux_of_beam
 
-        origin, direction = sample_line(emitter, target, u0, u1, u3, u4)
+        origin, direction = sample_line(lamps, emitter, target, u0, u1, u3, u4)
         flux = real(0.0)
         own = own_density(emitter, direction)
         if emitter.kind == SPHERE_LAMP:

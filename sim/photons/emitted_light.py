@@ -10,10 +10,11 @@ import warp as wp
 import scenes
 from sim.device_arrays import struct_array
 from sim.features import Features
+from sim.optics.polarisation import frame_across, seen_part
 from sim.photons.lamp_structs import make_lamp_structs
 from sim.polarised_light import make_light
 
-__all__ = ["compile_vibrations", "make_emitted_light"]
+__all__ = ["compile_vibrations", "make_emitted_light", "make_seen_light"]
 
 _UPRIGHT = scenes.Polarisation(degree=0.0)
 
@@ -37,6 +38,35 @@ def make_emitted_light(precision: str, features: Features) -> object:
         return start(own.light, own.up, direction)
 
     return emitted_light if mode == "stokes" else natural_light
+
+
+@functools.cache
+def make_seen_light(precision: str, features: Features) -> object:
+    """Device function `seen_light(lamps, emitter, direction, eye, frame)`.
+
+    What the eye of a camera path, which carries `eye` in `frame`, sees of the lamp's light over
+    what it would see of natural light; 1 but where camera paths carry Stokes vectors.
+    """
+    structs = make_lamp_structs(precision)
+    real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
+    mode = features.light_of("camera")
+    carried = make_light(precision, mode, polarisers=features.polarisers, towards_eye=True)
+    light_type, frame_type = carried.Light, carried.Frame
+
+    @wp.func
+    def all_light(
+        lamps: lamps_type, emitter: int, direction: vec3, eye: light_type, frame: frame_type
+    ):
+        return real(1.0)
+
+    @wp.func
+    def seen_light(
+        lamps: lamps_type, emitter: int, direction: vec3, eye: light_type, frame: frame_type
+    ):
+        own = lamps.vibrations[emitter]
+        return seen_part(eye, frame, own.light, frame_across(-direction, own.up), direction)
+
+    return seen_light if mode == "stokes" else all_light
 
 
 def compile_vibrations(emitters: Sequence[Any], precision: str, device: str) -> Any:

@@ -19,7 +19,7 @@ class EnergyBooks:
         emitted: flux of the photons that left the lamps.
         deposited: flux that met diffuse surfaces, before any of it is reflected on.
         absorbed: flux that ended in absorbers.
-        escaped: flux that left the scene.
+        escaped: flux that left the scene, or that an endless plane kept from coming near it.
         culled: flux dropped on purpose: paths longer than the limit, and the balance of Russian
             roulette, which is zero in expectation and may be negative.
     """

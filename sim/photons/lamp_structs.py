@@ -13,6 +13,7 @@ __all__ = [
     "AIM_CELLS",
     "AIM_CONE",
     "BEAM",
+    "DISTANT",
     "POINT",
     "RECTANGLE_LAMP",
     "SPHERE_LAMP",
@@ -25,11 +26,13 @@ POINT = wp.constant(1)
 SPOT = wp.constant(2)
 SPHERE_LAMP = wp.constant(3)
 RECTANGLE_LAMP = wp.constant(4)
+DISTANT = wp.constant(5)
+"""The same radiance along every line through the scene whose direction is in the emitter's cone."""
 
 AIM_BASE = wp.constant(0)
 """Directions as the lamp itself distributes them."""
 AIM_CONE = wp.constant(1)
-"""Directions into the cone around a bounding sphere."""
+"""Directions into the cone around a bounding sphere; from afar, lines through that sphere."""
 AIM_AREA = wp.constant(2)
 """Directions to points of a rectangle, as densely as the camera looks there."""
 
@@ -51,15 +54,20 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         frame: mat33  # rows: u, v, axis
         half_u: real
         half_v: real
-        radius: real
+        radius: real  # of a sphere; of the disk through which all light from afar comes
         sin2_half: real  # sin² of half the cone's half angle
+        visible: int
         widening: real  # of a beam, per length: the tangent of its half angle
         flux: real
+        radiance: real  # of its surface, where it has one
         first_target: int
         target_count: int
         first_segment: int
         segment_count: int
         first_cdf: int  # of its segments, in Lamps.cdf
+        first_mask: int  # of its mask's cells, columns first, in Lamps.cdf; −1: it has none
+        mask_columns: int
+        mask_rows: int
 
     @wp.struct
     class Target:

@@ -8,21 +8,14 @@ import numpy.typing as npt
 import warp as wp
 
 import scenes
-from sim.photons.aiming import Aim, Guide, View, plan_photons
+from sim.photons.aiming import Aim, Guide, View, aim_at_sensors, plan_photons
 from sim.photons.emitted_light import compile_vibrations
-from sim.photons.lamp_structs import (
-    AIM_CELLS,
-    BEAM,
-    POINT,
-    RECTANGLE_LAMP,
-    SPHERE_LAMP,
-    SPOT,
-    make_lamp_structs,
-)
+from sim.photons.emitter_rows import emitter_row, full_flux, mask_functions
+from sim.photons.lamp_structs import AIM_CELLS, make_lamp_structs
 from sim.precision import precision_types
 from sim.sampling.counter import seed_words
 from sim.sampling.sobol import DIMENSIONS, sobol_tables
-from sim.scene_data import CompiledScene, axis_frame, struct_array
+from sim.scene_data import CompiledScene, struct_array
 from spectra import EmissionSpectrum
 
 __all__ = ["Lamps", "Stream", "compile_lamps"]
@@ -46,7 +39,8 @@ class Lamps:
     Attributes:
         data: the device-side Lamps struct.
         streams: what one pass emits; their photon counts add up to the pass's photons.
-        flux: radiant flux inside the film's wavelengths, all lamps together [W].
+        flux: radiant flux inside the film's wavelengths, all lamps together [W]; of distant lamps
+            what comes through a sphere around the scene.
         spectra: of each emitter on the device, inside the film's wavelengths.
         aims: of each emitter on the device, what its streams are aimed at.
     """
@@ -85,14 +79,18 @@ def compile_lamps(
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.
     """
-    shining = _find_shining(compiled.scene, edges_nm)
+    shining = _find_shining(compiled, edges_nm)
+    emitters = [(emitter, flux) for emitter, _, flux in shining]
     if guide is None:
-        emitters = [(emitter, flux) for emitter, _, flux in shining]
         guide = plan_photons(compiled, emitters, view, direct=direct)
+    else:
+        guide = aim_at_sensors(compiled, emitters, guide)
     counts = _share(photons, list(guide.shares))
     tables = _Tables()
     for (emitter, spectrum, flux), aims, count in zip(shining, guide.aims, counts, strict=True):
-        tables.add(_emitter_row(compiled, emitter), spectrum, flux, aims, count)
+        tables.add(
+            emitter_row(compiled, emitter, flux), spectrum, aims, count, mask_functions(emitter)
+        )
     data = tables.on_device(compiled)
     data.vibrations = compile_vibrations(
         [emitter for emitter, _, _ in shining], compiled.precision, compiled.device
@@ -106,7 +104,7 @@ class _Tables:
     """Rows of the device's arrays as they grow, lamp by lamp, and the streams they make."""
 
     def __init__(self) -> None:
-        self.emitters: list[tuple[Any, ...]] = []
+        self.emitters: list[dict[str, Any]] = []
         self.targets: list[tuple[Any, ...]] = []
         self.segments: list[tuple[Any, ...]] = []
         self.streams: list[Stream] = []
@@ -114,16 +112,22 @@ class _Tables:
 
     def add(
         self,
-        geometry: tuple[Any, ...],
+        emitter: dict[str, Any],
         spectrum: EmissionSpectrum,
-        flux: float,
         aims: tuple[Aim, ...],
         photons: int,
+        mask: list[FloatArray],
     ) -> None:
-        """Add a lamp with its spectrum and its aims, among which `photons` are shared out."""
+        """Add a lamp with its spectrum, mask and aims, among which `photons` are shared out."""
         pieces, shares = _segments(spectrum)
-        counts = (len(self.targets), len(aims), len(self.segments), len(pieces))
-        self.emitters.append((*geometry, flux, *counts, self._add_distribution(shares)))
+        self.emitters.append({
+            **emitter,
+            "first_target": len(self.targets), "target_count": len(aims),
+            "first_segment": len(self.segments), "segment_count": len(pieces),
+            "first_cdf": self._add_distribution(shares),
+            "first_mask": self._add_distribution(*mask) if mask else -1,
+            "mask_columns": len(mask) - 1, "mask_rows": len(mask[-1]) - 1 if mask else 0,
+        })  # fmt: skip
         self.segments.extend(pieces)
         for aim, count in zip(aims, _share(photons, [a.share for a in aims]), strict=True):
             self.streams.append(Stream(len(self.emitters) - 1, len(self.targets), count))
@@ -143,7 +147,9 @@ class _Tables:
         structs, device = make_lamp_structs(compiled.precision), compiled.device
         types = precision_types(compiled.precision)
         data = structs.Lamps()
-        data.emitters = struct_array(structs.Emitter, self.emitters, device)
+        fields = structs.Emitter.numpy_dtype()["names"]
+        rows = [tuple(one[name] for name in fields) for one in self.emitters]
+        data.emitters = struct_array(structs.Emitter, rows, device)
         data.targets = struct_array(structs.Target, self.targets, device)
         data.segments = struct_array(structs.Segment, self.segments, device)
         data.sobol = wp.array(sobol_tables(), dtype=wp.uint32, device=device)
@@ -155,23 +161,23 @@ class _Tables:
 
 
 def _find_shining(
-    scene: scenes.Scene, edges_nm: FloatArray
+    compiled: CompiledScene, edges_nm: FloatArray
 ) -> list[tuple[Any, EmissionSpectrum, float]]:
     """The emitters that shine inside the film's range, each with what it gives there."""
     shining = [
         (emitter, *part)
-        for emitter in scene.emitters
-        if (part := _film_part(emitter, edges_nm)) is not None
+        for emitter in compiled.scene.emitters
+        if (part := _film_part(compiled, emitter, edges_nm)) is not None
     ]
     if not shining:
         allowed = f"an emitter that shines between {edges_nm[0]:g} and {edges_nm[-1]:g} nm"
         problem = scenes.Problem("emitters", f"none gives light; it needs {allowed}", None, allowed)
-        raise scenes.SceneError(scene.source_name, [problem])
+        raise scenes.SceneError(compiled.scene.source_name, [problem])
     return shining
 
 
 def _film_part(
-    emitter: Any, edges_nm: FloatArray
+    compiled: CompiledScene, emitter: Any, edges_nm: FloatArray
 ) -> tuple[EmissionSpectrum, float] | None:
     """The emitter's spectrum inside the film's range and the flux it has there [W], if any."""
     spectrum = emitter.emission()
@@ -179,7 +185,7 @@ def _film_part(
     inside = float(np.sum(spectrum.band_flux(np.array([low, high]))))
     if inside <= 0.0:
         return None
-    return spectrum.restricted(low, high), emitter.flux * inside / spectrum.total
+    return spectrum.restricted(low, high), full_flux(compiled, emitter) * inside / spectrum.total
 
 
 def _share(total: int, weights: list[float]) -> list[int]:
@@ -216,28 +222,3 @@ def _guide(cdf: FloatArray) -> npt.NDArray[np.int32]:
     cells = len(cdf) - 1
     found = np.searchsorted(cdf[1:], np.arange(cells + 1) / cells, side="right")
     return np.minimum(found, cells - 1).astype(np.int32)
-
-
-def _emitter_row(compiled: CompiledScene, emitter: Any) -> tuple[Any, ...]:
-    """The geometric fields of an Emitter: kind to widening."""
-    centre = compiled.to_local(emitter.position)
-    frame = np.eye(3)
-    if isinstance(emitter, scenes.Beam):
-        frame = np.stack(emitter.frame())
-        sin2_half = np.sin(0.5 * np.radians(emitter.divergence_deg)) ** 2
-        widening = np.tan(np.radians(emitter.divergence_deg))
-        if isinstance(emitter.profile, scenes.RoundProfile):
-            radius = emitter.profile.radius
-            return int(BEAM), 1, centre, frame, radius, radius, radius, sin2_half, widening
-        half_u, half_v = 0.5 * emitter.profile.width, 0.5 * emitter.profile.height
-        return int(BEAM), 0, centre, frame, half_u, half_v, 0.0, sin2_half, widening
-    if isinstance(emitter, scenes.Point):
-        return int(POINT), 0, centre, frame, 0.0, 0.0, 0.0, 1.0, 0.0
-    if isinstance(emitter, scenes.Spot):
-        sin2_half = np.sin(0.5 * np.radians(emitter.half_angle_deg)) ** 2
-        return int(SPOT), 0, centre, axis_frame(emitter.direction), 0.0, 0.0, 0.0, sin2_half, 0.0
-    if isinstance(emitter, scenes.SphereLamp):
-        return int(SPHERE_LAMP), 0, centre, frame, 0.0, 0.0, emitter.radius, 1.0, 0.0
-    frame = np.stack(emitter.frame())
-    half_u, half_v = 0.5 * emitter.size[0], 0.5 * emitter.size[1]
-    return int(RECTANGLE_LAMP), 0, centre, frame, half_u, half_v, 0.0, 1.0, 0.0

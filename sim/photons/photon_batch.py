@@ -10,6 +10,7 @@ import warp as wp
 from sim.photons.energy import EnergyBooks
 from sim.photons.photon_structs import make_photon_structs
 from sim.precision import precision_types
+from sim.sensors.pass_crossings import PassCrossings
 
 __all__ = ["PhotonBatch", "allocate_photons"]
 
@@ -24,6 +25,7 @@ class PhotonBatch:
         books: where the pass's flux went.
         origin: (3,), world position of the local frame's origin [m].
         deposits: (ranges,) how many photons each range of the launch stored, in their order.
+        crossings: what its photons have left on the sensors; None if there were none to cross.
         stands_for: how many photons each of them stands for.
     """
 
@@ -32,6 +34,7 @@ class PhotonBatch:
     books: EnergyBooks
     origin: npt.NDArray[np.float64]
     deposits: npt.NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, dtype=np.int32))
+    crossings: PassCrossings | None = None
     stands_for: int = 1
 
     def __len__(self) -> int:

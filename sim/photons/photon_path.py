@@ -18,7 +18,7 @@ from sim.optics.dispersion import tabulated_index
 from sim.photons.emission import make_emission, make_wavelength_function
 from sim.photons.emitted_light import make_emitted_light
 from sim.photons.energy import BOOK_COLUMNS
-from sim.photons.lamp_structs import make_lamp_structs
+from sim.photons.lamp_structs import DISTANT, make_lamp_structs
 from sim.photons.photon_structs import (
     add_bounce,
     add_event,
@@ -32,6 +32,7 @@ from sim.polarised_light import make_light
 from sim.sampling.counter import hash64, to_unit
 from sim.sampling.directions import sample_cosine_hemisphere, to_world
 from sim.sampling.roulette import choose_branches, play_roulette
+from sim.sensors.crossing import make_record_crossings
 from sim.transport import (
     EVENT_ABSORB,
     EVENT_BOUNDARY,
@@ -64,10 +65,12 @@ def make_follow(precision: str, features: Features) -> object:
     transport = make_transport(precision, features)
     real, vec3, scatter = transport.real, transport.vec3, transport.scatter
     media_indices, split = transport.media_indices, transport.split
+    absorption_of = transport.absorption_of
     scene_type, ray_type, hit_type = transport.Scene, transport.Ray, transport.Hit
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
-    intersect = transport.intersect
+    intersect, facet_toward = transport.intersect, transport.facet_toward
+    record_crossings = make_record_crossings(precision)
     both_branches = features.method.branching == "weights"
     losses = features.absorption or features.finishes or features.polarisers
     mode = features.light_of("photons")
@@ -139,6 +142,14 @@ def make_follow(precision: str, features: Features) -> object:
         step = int(0)
         while step < job.max_interactions:
             met = scatter(scene, ray, hit, indices)
+            if wp.static(features.sensors):
+                alpha = real(0.0)
+                if wp.static(features.absorption):
+                    alpha = absorption_of(indices, met.medium)
+                record_crossings(
+                    job, ray, hit.t, alpha, wavelength_nm, flux, history,
+                    draws + wp.uint64(step), out_photons, out_counts,
+                )
             history = mark_dispersed(history, met.dispersive)
             if wp.static(polarised):
                 if met.event == EVENT_BOUNDARY:
@@ -225,9 +236,12 @@ def make_follow(precision: str, features: Features) -> object:
                             goes_on = flux * diffuse_reflectance(scene, finish, wavelength_nm)
                             history = add_bounce(mark_dispersed(history, finish.varies))
                             draw = draws + wp.uint64(step)
-                            ray.direction = bounce(
-                                met.normal, hash64(job.key + wp.uint64(3), draw), flux
-                            )
+                            way = bounce(met.normal, hash64(job.key + wp.uint64(3), draw), flux)
+                            if wp.static(features.meshes):
+                                # About a smooth normal, but never through the facet.
+                                facet = facet_toward(scene, met, ray.direction)
+                                way -= facet * (real(2.0) * wp.min(wp.dot(way, facet), real(0.0)))
+                            ray.direction = way
                             ray.origin = met.point
                             ray.prim = met.prim
                             ray.face = met.face
@@ -284,13 +298,28 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     """Kernel `trace_photons(start, scene, lamps, job, photons, counts, books)`."""
     transport = make_transport(precision, features)
     real, scene_type, intersect = transport.real, transport.Scene, transport.intersect
-    lamps_type = make_lamp_structs(precision).Lamps
+    lamp_structs, ray_type = make_lamp_structs(precision), transport.Ray
+    lamps_type, emitter_type = lamp_structs.Lamps, lamp_structs.Emitter
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
-    emit = make_emission(precision, features.method.sampler)
+    emit = make_emission(precision, features)
     sample_wavelength = make_wavelength_function(precision)
     follow = make_follow(precision, features)
     emitted_light = make_emitted_light(precision, features)
+
+    @wp.func
+    def is_shaded(scene: scene_type, emitter: emitter_type, ray: ray_type):
+        """Whether light from afar has met something endless before it comes near the scene."""
+        if emitter.kind != DISTANT:
+            return False
+        back = ray_type()
+        back.origin = ray.origin
+        back.direction = -ray.direction
+        back.prim = -1
+        back.face = -1
+        back.prim2 = -1
+        hit = intersect(scene, back)
+        return hit.prim >= 0
 
     @wp.func
     def trace_photon(
@@ -302,6 +331,10 @@ def make_trace_photons(precision: str, features: Features) -> Any:
             lamps, job.emitter, job.target, job.seed_row, index, job.key
         )
         flows = FLOWS()
+        if wp.static(features.distant_lamps and features.flats):
+            if is_shaded(scene, lamps.emitters[job.emitter], ray):
+                flows[2] = wp.float64(emitted)
+                return emitted, flows
         if emitted > real(0.0):
             # What meets a dispersive surface first is followed in several colours at once.
             colours = int(1)

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import warp as wp
 
 from sim.precision import precision_types
+from sim.sensors.sensor_structs import make_sensor_structs
 
 __all__ = [
     "HISTORY_LIMIT",
@@ -85,10 +86,12 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
 
     Photons: `position` in the local frame [m]; `direction` where the photon was going, unit;
     `wavelength_nm`; `flux` [W]; `surface`, see `surface_key`; `history`, packed counts;
-    `emitter`, the row of its lamp among those that shine.
+    `emitter`, the row of its lamp among those that shine; `crossings`, what sensors have recorded.
     """
     types = precision_types(precision)
     real, vec3 = types.real, types.vec3
+    sensor_structs = make_sensor_structs(precision)
+    sensors_type, crossings_type = sensor_structs.Sensors, sensor_structs.Crossings
 
     @wp.struct
     class Photons:
@@ -99,10 +102,14 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         surface: wp.array(dtype=int)
         history: wp.array(dtype=int)
         emitter: wp.array(dtype=int)
+        crossings: crossings_type
 
     @wp.struct
     class Job:
-        """Photons of one emitter and target, and the slots their deposits may take."""
+        """Photons of one emitter and target, and the slots of what they leave behind.
+
+        Deposits, crossings that are binned and rays that are kept have their slots each.
+        """
 
         emitter: int
         target: int
@@ -117,6 +124,7 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         max_interactions: int
         store_direct: int  # 0: what comes straight from the lamp is booked, but not stored
         branch_threshold: real
+        sensors: sensors_type
         bounces: int  # off diffuse surfaces, at most
 
     return SimpleNamespace(Photons=Photons, Job=Job)

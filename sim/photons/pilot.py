@@ -13,11 +13,13 @@ import numpy as np
 import numpy.typing as npt
 import warp as wp
 
+from sim.features import Features
 from sim.launch import cut_ranges, launch_ranges
+from sim.photons.cells import make_cell_functions
 from sim.photons.densities import make_density_functions
 from sim.photons.emission import make_emission
 from sim.photons.energy import BOOK_COLUMNS
-from sim.photons.lamp_structs import AIM_CONE, BEAM, SPHERE_LAMP, make_lamp_structs
+from sim.photons.lamp_structs import AIM_CONE, BEAM, make_lamp_structs
 from sim.photons.lamps import Lamps
 from sim.photons.photon_batch import PhotonBatch, allocate_photons
 from sim.photons.photon_path import make_trace_photons
@@ -38,24 +40,29 @@ _SLOTS = 16
 
 
 @functools.cache
-def make_retrace_emission(precision: str, sampler: str) -> Any:
+def make_retrace_emission(precision: str, features: Features) -> Any:
     """Kernel: of each photon of a stream, every target's density and place in its square."""
     structs = make_lamp_structs(precision)
     real, vec3, lamps_type = structs.real, structs.vec3, structs.Lamps
     emitter_type = structs.Emitter
-    emit = make_emission(precision, sampler)
-    densities = make_density_functions(precision)
-    target_density, square_of_cone = densities.target_density, densities.square_of_cone
+    emit = make_emission(precision, features)
+    before_mask = make_cell_functions(precision).before_mask
+    densities = make_density_functions(precision, distant=features.distant_lamps)
+    target_density, square_of_target = densities.target_density, densities.square_of_target
 
     @wp.func
-    def square_of_profile(emitter: emitter_type, origin: vec3):
+    def square_of_profile(lamps: lamps_type, emitter: emitter_type, origin: vec3):
         offset = origin - emitter.centre
         x = wp.dot(offset, emitter.frame[0]) / emitter.half_u
         y = wp.dot(offset, emitter.frame[1]) / emitter.half_v
         if emitter.round == 1:
             return disk_square(x, y)
-        half = real(0.5)
-        return half + half * x, half + half * y
+        s = real(0.5) + real(0.5) * x
+        t = real(0.5) + real(0.5) * y
+        if wp.static(features.masks):
+            if emitter.first_mask >= 0:
+                return before_mask(lamps.cdf, emitter, s, t)
+        return s, t
 
     @wp.kernel(module="unique", enable_backward=False)
     def retrace_emission(
@@ -81,17 +88,14 @@ def make_retrace_emission(precision: str, sampler: str) -> Any:
             t = real(0.5)
             density = target.photons
             if emitter.kind == BEAM:
-                s, t = square_of_profile(emitter, ray.origin)
+                s, t = square_of_profile(lamps, emitter, ray.origin)
             elif flux > real(0.0):
                 density *= target_density(
                     lamps, emitter, target, ray.origin, ray.direction,
                     emitter.first_target + k == target_row,
                 )
                 if target.kind == AIM_CONE:
-                    anchor = ray.origin
-                    if emitter.kind == SPHERE_LAMP:
-                        anchor = emitter.centre
-                    s, t = square_of_cone(target, anchor, ray.direction)
+                    s, t = square_of_target(emitter, target, ray.origin, ray.direction)
             out_density[row, k] = density
             out_square[row, k, 0] = wp.float32(s)
             out_square[row, k, 1] = wp.float32(t)
@@ -233,7 +237,7 @@ class _PilotRun:
         density = wp.zeros((total, targets), dtype=compiled.structs.real, device=compiled.device)
         square = wp.zeros((total, targets, 2), dtype=wp.float32, device=compiled.device)
         self._launch(
-            make_retrace_emission(compiled.precision, compiled.features.method.sampler),
+            make_retrace_emission(compiled.precision, compiled.features),
             lambda row, job: [
                 self.lamps.data, job.emitter, job.target, job.seed_row, job.key,
                 int(self.firsts[row]), density, square,

@@ -41,9 +41,10 @@ def make_receiver_structs(precision: str) -> SimpleNamespace:
     """Struct Receivers, for bands of equal width.
 
     `reflectance[object, i]` holds at `first_nm + i` nm and is linear between; it is divided by
-    π. `spread[lamp, object, band]` is the share of the lamp's flux in the band, times the
-    reflectance there over π. `luminance[band]` is that of unit radiance in the band [cd/m²], and
-    `spread_luminance[lamp, object]` that of `spread`. Groups: `bands` bands, then `DEALS`.
+    π. `share[lamp, band]` is the share of the lamp's flux in the band, and
+    `spread[lamp, object, band]` that times the reflectance there over π. `luminance[band]` is
+    that of unit radiance in the band [cd/m²], and `spread_luminance[lamp, object]` that of
+    `spread`. Groups: `bands` bands, then `DEALS`.
     """
     real = precision_types(precision).real
 
@@ -56,6 +57,7 @@ def make_receiver_structs(precision: str) -> SimpleNamespace:
         first_nm: real
         reflectance: wp.array2d(dtype=real)
         spread: wp.array3d(dtype=real)
+        share: wp.array2d(dtype=real)
         luminance: wp.array(dtype=real)
         spread_luminance: wp.array2d(dtype=real)
 
@@ -85,6 +87,8 @@ def compile_receivers(compiled: CompiledScene, lamps: Lamps, edges_nm: FloatArra
         reflectance.astype(types.dtype), dtype=types.real, device=compiled.device
     )
     data.spread = wp.array(spread.astype(types.dtype), dtype=types.real, device=compiled.device)
+    share = np.stack([one.band_flux(edges_nm) / one.total for one in lamps.spectra])
+    data.share = wp.array(share.astype(types.dtype), dtype=types.real, device=compiled.device)
     luminance = _luminance_weights(compiled.scene.film.observer, edges_nm)
     data.luminance = wp.array(
         luminance.astype(types.dtype), dtype=types.real, device=compiled.device

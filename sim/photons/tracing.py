@@ -18,6 +18,9 @@ from sim.photons.photon_structs import make_photon_structs
 from sim.sampling.counter import fold_key
 from sim.sampling.sobol import DIMENSIONS
 from sim.scene_data import CompiledScene
+from sim.sensors.crossing import COUNT_BINS, COUNT_RAYS
+from sim.sensors.pass_crossings import allocate_crossings, collect_crossings
+from sim.sensors.sensor_bank import SensorBank
 
 __all__ = ["make_job", "trace_photons"]
 
@@ -34,6 +37,9 @@ BRANCH_THRESHOLD = 0.01
 _ROW = 32
 """Numbers in a range's row of counters, of which few are used: no two cores write to one cache
 line."""
+
+_COUNTERS = 3
+"""Numbers that a range counts: its deposits, crossings of bins, and rays that are kept."""
 
 _SLOTS_PER_PHOTON = 6 * int(COLOURS)
 """Room for deposits: on the CPU it takes address space, not memory, until it is written to. A
@@ -60,6 +66,7 @@ def trace_photons(
     max_interactions: int,
     threads: int,
     store_direct: bool = True,
+    sensors: SensorBank | None = None,
     bounces: int = 0,
     stop: threading.Event | None = None,
     on_done: Callable[[int], None] | None = None,
@@ -76,6 +83,7 @@ def trace_photons(
         max_interactions: surfaces that one photon and all its branches may meet.
         threads: CPU threads.
         store_direct: also store what comes straight from a lamp; else it is only in the books.
+        sensors: what else the photons leave traces on; None: nothing.
         bounces: off diffuse surfaces, at most, if the kernels know of them.
         stop: once set, from another thread, tracing ends; the batch is then incomplete.
         on_done: told of finished photons.
@@ -91,25 +99,38 @@ def trace_photons(
             shares.append(_Share(row, start, count, slot, room))
             slot += room
     run = _Run(
-        compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, bounces, stop,
-        branch_threshold,
+        compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, sensors,
+        bounces, stop, branch_threshold,
     )
     photons, counts, books = run.trace(shares, slot, on_done)
-    short = [i for i, share in enumerate(shares) if counts[i] > share.slot_count]
-    if short:
+    if any(counts[i].max() > share.slot_count for i, share in enumerate(shares)):
         # Their kernels counted what did not fit: now the need of every range is known exactly.
         slot = 0
         for share, count in zip(shares, counts, strict=True):
-            share.first_slot, share.slot_count = slot, int(count)
-            slot += int(count)
+            share.first_slot, share.slot_count = slot, int(count.max())
+            slot += share.slot_count
         photons, counts, books = run.trace(shares, slot, None)
-    slots = np.concatenate(
+    crossings = None
+    if sensors is not None:
+        crossings = collect_crossings(
+            photons.crossings, sensors, _slots(shares, counts[:, int(COUNT_BINS)]),
+            _slots(shares, counts[:, int(COUNT_RAYS)]), compiled.origin,
+        )
+    stored = counts[:, 0]
+    return PhotonBatch(
+        photons, _slots(shares, stored), EnergyBooks.from_rows(books), compiled.origin, stored,
+        crossings,
+    )
+
+
+def _slots(shares: list[_Share], counts: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+    """The slots that are filled, if each range has filled as many as `counts` says."""
+    return np.concatenate(
         [
             np.arange(share.first_slot, share.first_slot + count, dtype=np.int32)
             for share, count in zip(shares, counts, strict=True)
         ]
     )
-    return PhotonBatch(photons, slots, EnergyBooks.from_rows(books), compiled.origin, counts)
 
 
 @dataclass(frozen=True)
@@ -123,6 +144,7 @@ class _Run:
     max_interactions: int
     threads: int
     store_direct: bool
+    sensors: SensorBank | None
     bounces: int
     stop: threading.Event | None
     branch_threshold: float
@@ -130,10 +152,12 @@ class _Run:
     def trace(
         self, shares: list[_Share], slots: int, on_done: Callable[[int], None] | None
     ) -> tuple[Any, npt.NDArray[np.int32], npt.NDArray[np.float64]]:
-        """Launch every share; return the Photons struct, deposits a share, and books a share."""
+        """Launch every share; return the Photons struct, what each share counted, and its books."""
         compiled, device = self.compiled, self.compiled.device
         kernel = make_trace_photons(compiled.precision, compiled.features)
         photons = allocate_photons(compiled.precision, device, slots)
+        if self.sensors is not None:
+            allocate_crossings(photons.crossings, self.sensors, compiled.precision, max(1, slots))
         counts = wp.zeros((len(shares), _ROW), dtype=int, device=device)
         books = wp.zeros((len(shares), _ROW), dtype=wp.float64, device=device)
 
@@ -151,7 +175,7 @@ class _Run:
             stop=self.stop,
             on_done=on_done,
         )
-        return photons, counts.numpy()[:, 0], books.numpy()[:, : len(BOOK_COLUMNS)]
+        return photons, counts.numpy()[:, :_COUNTERS], books.numpy()[:, : len(BOOK_COLUMNS)]
 
     @property
     def _run_length(self) -> int:
@@ -171,6 +195,8 @@ class _Run:
         job.max_interactions = self.max_interactions
         job.store_direct = int(self.store_direct)
         job.branch_threshold = self.branch_threshold
+        if self.sensors is not None:
+            job.sensors = self.sensors.data
         job.bounces = self.bounces
         return job
 

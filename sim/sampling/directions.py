@@ -15,6 +15,7 @@ __all__ = [
     "cone_solid_angle",
     "cone_square",
     "disk_square",
+    "frame_of",
     "from_world",
     "sample_cone",
     "sample_cosine_hemisphere",

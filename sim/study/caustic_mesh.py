@@ -19,11 +19,11 @@ import numpy as np
 import numpy.typing as npt
 
 from scenes import Plane, Scene
-from scenes.emitters import AnyEmitter
+from scenes.emitters import AnyLocalEmitter
 from sim.errors import SettingsError
 from sim.scene_data import CompiledScene
 from sim.study.chain_rays import make_chain
-from sim.study.lamp_charts import has_extent, make_charts
+from sim.study.lamp_charts import has_charts, has_extent, make_charts
 from sim.study.mesh_flux import MeshFlux, trace_mesh
 from sim.study.quadrature import band_nodes
 from sim.study.receiver_bins import ReceiverBins, find_object
@@ -214,13 +214,15 @@ def _extrapolate(
     return order, first / (2.0**used - 1.0)
 
 
-def _find_emitter(scene: Scene, name: str) -> AnyEmitter:
+def _find_emitter(scene: Scene, name: str) -> AnyLocalEmitter:
     """The emitter called `name`."""
-    found = [lamp for lamp in scene.emitters if lamp.name == name]
-    if not found:
-        names = ", ".join(lamp.name for lamp in scene.emitters)
-        raise SettingsError("emitter", name, f"an emitter of the scene: {names}")
-    return found[0]
+    for lamp in scene.emitters:
+        if lamp.name == name:
+            if has_charts(lamp):
+                return lamp
+            raise SettingsError("emitter", name, "one not infinitely far away, and without mask")
+    names = ", ".join(lamp.name for lamp in scene.emitters)
+    raise SettingsError("emitter", name, f"an emitter of the scene: {names}")
 
 
 def _bounds(scene: Scene, target: str) -> tuple[FloatArray, float]:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 import scenes
-from sim.image.exposure import automatic_stops
+from sim.image.exposure import automatic_stops, scene_stops
 from sim.study.glass_chain import GlassChain
 from sim.study.metrics import centroid_error, ciede2000, energy_residual
 from sim.study.outcome import Row
@@ -81,7 +81,7 @@ def _with_colours(
 ) -> Row:
     """The row with its colour differences at the scene's exposure, else at the reference's."""
     expected = xyz_to_linear_srgb(reference.values / LUMINOUS_EFFICACY_LM_W)
-    stops = scene.film.exposure_stops
+    stops = scene_stops(scene)
     stops = automatic_stops(expected) if stops is None else stops
     found = [
         ciede2000(

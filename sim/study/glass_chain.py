@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 import scenes
 from sim.photons.photon_batch import PhotonBatch
+from sim.study.lamp_charts import has_charts
 from sim.study.receiver_bins import ReceiverBins, lay_bins
 
 __all__ = ["ChainPhotons", "GlassChain", "bin_chain", "find_chain", "select_chain"]
@@ -87,16 +88,15 @@ def find_chain(
     ]
     through &= np.isin(photons["object"], rectangles)
     edges = scene.film.edges_nm
-    names = [one.name for one in scene.emitters if one.emission().band_flux(edges).any()]
-    polarised = {one.name for one in scene.emitters if one.polarisation is not None}
-    for row, name in enumerate(names):
-        if name in polarised:
+    shining = [one for one in scene.emitters if one.emission().band_flux(edges).any()]
+    for row, emitter in enumerate(shining):
+        if emitter.polarisation is not None:
             continue  # the mesh's light starts natural
-        lit = through & (photons["emitter"] == row)
+        lit = through & (photons["emitter"] == row) & has_charts(emitter)
         if np.count_nonzero(lit) < SHINING * len(batch):
             continue
         chosen = {key: values[lit] for key, values in photons.items()}
-        return _chain_of(scene, (name, row), chosen, cells, bands)
+        return _chain_of(scene, (emitter.name, row), chosen, cells, bands)
     return None
 
 

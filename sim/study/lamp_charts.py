@@ -7,25 +7,31 @@ it is a sum over the lines' offsets from its centre, evenly over a disk.
 
 import math
 from collections.abc import Sequence
+from typing import TypeGuard
 
 import numpy as np
 import numpy.typing as npt
 
 import scenes
-from scenes.emitters import AnyEmitter
+from scenes.emitters import AnyEmitter, AnyLocalEmitter, LocalEmitter, has_mask
 from sim.errors import SettingsError
 from sim.scene_data import axis_frame
 from sim.study.beam_charts import make_beam_charts
 from sim.study.quadrature import disk_nodes, unit_nodes
 from sim.study.ray_charts import Chart, ConeChart, Emission, RimChart
 
-__all__ = ["has_extent", "make_charts"]
+__all__ = ["has_charts", "has_extent", "make_charts"]
 
 FloatArray = npt.NDArray[np.float64]
 
 RIM = 1.0 - 1e-9
 """Share of a bounding sphere's radius that charts span: a ray along a sphere's very rim would hit
 it or miss it by rounding. Hardly any light enters there."""
+
+
+def has_charts(emitter: AnyEmitter) -> TypeGuard[AnyLocalEmitter]:
+    """Whether the lamp's rays can be charted: it is somewhere in the scene, and has no mask."""
+    return isinstance(emitter, LocalEmitter) and not has_mask(emitter)
 
 
 def has_extent(emitter: AnyEmitter) -> bool:
@@ -36,12 +42,12 @@ def has_extent(emitter: AnyEmitter) -> bool:
 
 
 def make_charts(
-    emitter: AnyEmitter, centre: FloatArray, radius: float, points: int
+    emitter: AnyLocalEmitter, centre: FloatArray, radius: float, points: int
 ) -> Sequence[Chart]:
     """Charts of the lamp's rays that can meet a sphere.
 
     Args:
-        emitter: one of a scene's emitters.
+        emitter: one of a scene's emitters, one that has charts.
         centre: (3,) of the sphere [m].
         radius: of the sphere [m].
         points: nodes along each direction of the lamp's extent, or along the radius.

@@ -18,6 +18,9 @@ position = [1, 2, 3]
 look_at = [0, 0, 1]
 up = [0, 3, 4]
 fov_deg = 40
+aperture_radius = 3
+focus_distance = 20
+sensor_height = 30
 [render]
 radius = 0.25
 photons = 10
@@ -109,9 +112,21 @@ flux = 2
 spectrum = "D65"
 position = [1, 2, 3]
 size = [4, 5]
+[[emitters]]
+type = "sun"
+direction = [1, 0, 0]
+irradiance = 2
+spectrum = "D65"
+[[emitters]]
+type = "environment"
+radiance = 2
+spectrum = "D65"
 """
 
-LENGTHS = {"position", "look_at", "radius", "size", "base", "length", "thickness", "aperture"}
+LENGTHS = {
+    "position", "look_at", "radius", "size", "base", "length", "thickness", "aperture",
+    "aperture_radius", "focus_distance", "sensor_height",
+}  # fmt: skip
 LENGTHS_OF = {"prism": {"height"}, "slit": {"width", "height"}, "polyhedron": {"vertices"}}
 LENGTHS |= {"amplitude", "period", "depth", "heights"}
 IN_FILES = {"file", "unit"}

@@ -167,3 +167,18 @@ def test_the_pane_is_seen_at_brewsters_angle() -> None:
         assert abs(float(along @ expected)) == pytest.approx(1.0, abs=1e-9)
         distance = (np.array(sheet.shape.position) - camera.position) @ sight
         assert distance == pytest.approx(0.45, abs=2e-6)
+
+
+def test_the_pools_crests_reach_the_floor_where_they_meet() -> None:
+    water = shape_of(scenes.load("pool"), "water")
+    assert isinstance(water, scenes.HeightField)
+    assert water.waves is not None
+    assert water.depth is not None
+    # f = n/(n - 1) R with the curvature 1/R = 4π² A/P² of a crest, and the sum of them all.
+    n = glass("water").eta(550.0)
+    powers = [
+        (n - 1.0) / n * 4.0 * math.pi**2 * wave.amplitude / wave.period**2 for wave in water.waves
+    ]
+    assert 1.0 / powers[0] == pytest.approx(8.2, abs=0.1)
+    assert 1.0 / powers[-1] == pytest.approx(2.9, abs=0.1)
+    assert 1.0 / sum(powers) < water.depth

@@ -50,8 +50,8 @@ def test_all_problems_are_reported_at_once_with_the_paths_of_the_file(problems: 
         "objects[1].shape.size[1]",
         "objects[1].material.reflectance",
         "emitters[0].type",
-        "emitters[1].flux",
         "emitters[1].spectrum",
+        "emitters[1].flux",
         "titel",
     ]
     assert found["film.width"].value == 0

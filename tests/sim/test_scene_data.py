@@ -1,6 +1,7 @@
 """The scene as the device sees it: places in the local frame, and indices of its media."""
 
 import functools
+import math
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import warp as wp
 
 import scenes
 from sim.device import start_device
-from sim.scene_data import compile_scene, find_origin
+from sim.scene_data import bounding_radius, compile_scene, find_origin
 from sim.transport import make_transport
 from spectra import air_index, glass
 
@@ -247,3 +248,19 @@ def test_a_boundary_disperses_where_its_relative_index_depends_on_the_wavelength
 ):
     compiled = compile_scene(scene_of(ball(0.0, medium), ambient=ambient))
     assert compiled.data.bodies.numpy()["dispersive"].tolist() == [int(disperses)]
+
+
+def test_sensors_count_where_light_must_reach_them():
+    place = scenes.Rectangle(position=(3000.0, 4.0, 0.0), size=(6.0, 8.0))
+    sensor = scenes.RaySensor(shape=place)
+    alone = compile_scene(scenes.Scene(sensors=(sensor,)))
+    np.testing.assert_array_equal(alone.origin, place.position)
+    assert alone.bounding_radius == pytest.approx(5.0)
+    ball = scenes.SceneObject(
+        shape=scenes.Sphere(position=(0.0, 0.0, 0.0), radius=1.0), material=scenes.Absorber()
+    )
+    both = compile_scene(scenes.Scene(objects=(ball,), sensors=(sensor,)))
+    np.testing.assert_array_equal(both.origin, 0.0)
+    assert both.bounding_radius == pytest.approx(math.hypot(3000.0, 4.0) + 5.0)
+    # What touches what is a matter of the objects alone.
+    assert bounding_radius(both.scene, both.origin) == 1.0

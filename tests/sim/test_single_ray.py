@@ -222,3 +222,39 @@ def test_deviation_is_measured_without_loss():
         wavelength_nm=550.0,
     )  # fmt: skip
     assert path.deviation == pytest.approx(1e-9, rel=1e-15)
+
+
+def test_mirrors_and_hidden_faces_have_names_of_their_own():
+    grey = scenes.NapierianAbsorption(coefficient=2.0)
+    glass_of = {"medium": scenes.ConstantMedium(eta=1.5), "absorption": grey}
+    scene = scenes.Scene(objects=[
+        scenes.SceneObject(
+            name="outer", shape=scenes.Box(position=ORIGIN, size=(2.0, 2.0, 2.0)),
+            material=scenes.Dielectric(priority=1, **glass_of),
+        ),
+        scenes.SceneObject(
+            name="hidden", shape=scenes.Box(position=ORIGIN, size=(1.0, 1.0, 1.0)),
+            material=scenes.Dielectric(medium="N-BK7"),
+        ),
+        scenes.SceneObject(
+            name="wall", shape=scenes.Plane(position=(3.0, 0.0, 0.0), normal=(-1.0, 0.0, 0.0)),
+            material=scenes.Mirror(reflectance=0.75),
+        ),
+    ])  # fmt: skip
+    path = sim.trace_ray(scene, (-3.0, 0.0, 0.0), RIGHT, 550.0, max_interactions=9)
+    through = ("refract", "pass", "pass", "refract")
+    assert path.events == (*through, "mirror", *through[:3], "limit")
+    assert path.objects[:5] == ("outer", "hidden", "hidden", "outer", "wall")
+    # 1 − exp(−α d) on each way, and what the mirror keeps where it ends one.
+    ways = 1.0 - np.exp(-2.0 * np.array([0.5, 1.0, 0.5]))
+    expected = [0.0, *ways, 0.25, 0.0, *ways]
+    np.testing.assert_allclose(path.absorptances, expected, rtol=1e-14, atol=1e-16)
+    assert path.reflectances[4] == 1.0
+    # A mirror and a hidden face take no entry that names a branch of theirs, but the mirror counts.
+    back = sim.trace_ray(
+        scene, (-3.0, 0.0, 0.0), RIGHT, 550.0, branches=("refract", "refract", "reflect", "reflect")
+    )
+    assert back.events[:6] == (*through, "mirror", "reflect")
+    away = sim.trace_ray(scene, (-3.0, 0.0, 0.0), RIGHT, 550.0, branches=("reflect",))
+    assert away.events == ("reflect", "escape")
+    assert away.transmittance == pytest.approx(0.04, rel=1e-14)

@@ -26,6 +26,17 @@ def test_surfaces_lamps_and_rays_are_all_there(small_scene):
     assert axes.get_aspect() == 1.0
 
 
+def test_sensors_are_dashed(small_scene):
+    place = scenes.Rectangle(position=(0.0, 0.5, 0.0), size=(1.0, 1.0))
+    scene = small_scene.model_copy(update={"sensors": (scenes.RaySensor(shape=place),)})
+    (axes,) = draw_rays(scene, PATHS, view="xy").axes
+    outlines = [patch for patch in axes.patches if isinstance(patch, Polygon)]
+    (dashed,) = (one for one in outlines if one.get_linestyle() in ("--", "dashed"))
+    assert len(outlines) == 4
+    np.testing.assert_allclose(dashed.get_xy()[:, 1], 0.5)
+    assert np.ptp(dashed.get_xy()[:, 0]) == 1.0
+
+
 def test_the_picture_holds_paths_and_solids_but_no_endless_floor(small_scene):
     (axes,) = draw_rays(small_scene, PATHS, view="xy").axes
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()

@@ -83,6 +83,32 @@ def test_no_knot_of_a_table_is_missed():
     assert variation == pytest.approx(0.1 / 1.5, rel=1e-12)
 
 
+def test_media_that_may_touch_are_held_against_each_other():
+    # A flint in a liquid of nearly its index: next to that, its dispersion decides everything.
+    liquid = scenes.ConstantMedium(eta=1.6)
+    flint = scenes.CauchyMedium(a=(1.599, 1e-4), range_nm=(300.0, 900.0))
+    shape = scenes.Sphere(position=(0.0, 0.0, 0.0), radius=1.0)
+
+    def subject(gap):
+        objects = [
+            scenes.SceneObject(shape=shape, material=scenes.Dielectric(medium=liquid)),
+            scenes.SceneObject(
+                shape=shape.model_copy(update={"position": (2.0 + gap, 0.0, 0.0)}),
+                material=scenes.Dielectric(medium=flint),
+            ),
+        ]
+        media = (AMBIENT, liquid.resolved(), flint.resolved())
+        return Subject(scenes.Scene(objects=objects), media, (0, 0, 0))
+
+    apart, touching = (relative_variations(subject(gap)) for gap in (1.0, 0.0))
+    assert len(apart) == 2
+    assert touching[:2] == apart
+    eta, variation = touching[2]
+    n = 1.599 + 1e-4 / np.array([0.395, 0.705]) ** 2
+    assert eta == pytest.approx(n[0] / 1.6, rel=1e-14)
+    assert variation == pytest.approx(n[0] / n[1] - 1.0, rel=1e-9)
+
+
 def test_what_has_no_index_in_the_films_range_is_not_known():
     table = Medium("table", Tabulated((500.0, 600.0), (1.5, 1.4)), (500.0, 600.0), "", "air")
     subject = subject_of(table)

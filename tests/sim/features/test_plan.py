@@ -25,9 +25,10 @@ from spectra import Cauchy, Medium, Tabulated, glass
 NOTHING = Features(
     spheres=False, flats=False, polyhedra=False, lenses=False, sellmeier=False, cauchy=False,
     tabulated=False, air_conversion=False, boundaries=False, reflected_branches=False,
-    dispersion=False, beams=False, sphere_lamps=False, rectangle_lamps=False, interfaces=False,
-    absorption=False, finishes=False, meshes=False, interreflection=False,
-    polarisers=False, polarisation=False, stokes=False, camera_stokes=False,
+    dispersion=False, beams=False, sphere_lamps=False, rectangle_lamps=False,
+    distant_lamps=False, masks=False, thin_lens=False, visible_lamps=False, pixel_filter=False,
+    interfaces=False, absorption=False, finishes=False, meshes=False, interreflection=False,
+    sensors=False, polarisers=False, polarisation=False, stokes=False, camera_stokes=False,
 )  # fmt: skip
 AMBIENT = Medium("reference", Cauchy((1.0,)), (0.0, 1e9), "", "air")
 TABLE = Medium("table", Tabulated((400.0, 700.0), (1.5, 1.4)), (400.0, 700.0), "", "air")

@@ -12,7 +12,7 @@ from scenes.shapes import Surface
 from sim.device import start_device
 from sim.geometry.mesh import intersect_mesh, mesh_normal
 from sim.geometry.mesh_height import height_above_mesh
-from sim.mesh_data import compile_meshes
+from sim.mesh_data import PlacedMesh, compile_meshes
 from sim.mesh_structs import make_mesh_structs
 from sim.precision import precision_types
 
@@ -98,7 +98,9 @@ def make_probe(precision):
 
 @functools.cache
 def compiled(precision):
-    shapes = [(Given(position=(key, 0.0, 0.0)), CENTRE, row) for row, key in enumerate(SURFACES)]
+    shapes = [
+        PlacedMesh(Given(position=(key, 0.0, 0.0)), CENTRE, row) for row, key in enumerate(SURFACES)
+    ]
     return compile_meshes(shapes, precision=precision, device="cpu")
 
 
@@ -255,3 +257,30 @@ def test_heights_tell_inside_outside_and_on_it(precision, row) -> None:
             assert (found == 0.0).all()
         else:
             assert (found[:30] == expected).mean() > 0.9  # in a fold another facet is as near
+
+
+def test_on_an_edge_a_ray_that_goes_in_comes_out_and_one_that_leaves_is_gone(precision) -> None:
+    # Starts on the edges of a box, off them by some roundings either way, as vertices are. A ray
+    # into the half spaces of both faces is in the box and has to come out of it next, even if it
+    # started a hair before the other face. A box is convex: outward there is nothing.
+    surface = SURFACES[1.0]
+    eps = np.finfo(precision_types(precision).dtype).eps
+    rng = np.random.default_rng(7)
+    faces, sides = (one.ravel() for one in np.indices((12, 3)))
+    across = surface.facet_normals[surface.neighbours[faces, sides]]
+    start = surface.corners[faces, sides]
+    end = surface.corners[faces, (sides + 1) % 3]
+    starts = start + rng.uniform(0.2, 0.8, (36, 1)) * (end - start)
+    starts = np.vstack([starts + k * eps * across for k in (-4.0, -1.0, 0.0, 1.0, 4.0)])
+    normals = np.tile(surface.facet_normals[faces], (5, 1))
+    directions = rng.normal(size=starts.shape)
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    # Which row of the tree is which triangle: asked of a ray straight down onto its middle.
+    middles = surface.corners.mean(axis=1)
+    rows = probed(precision, 1, middles + surface.facet_normals, -surface.facet_normals).face
+    found = probed(precision, 1, starts, directions, np.tile(rows[faces], 5))
+    outward = np.sum(directions * normals, axis=1) > 0.0
+    inward = ~outward & (np.sum(directions * np.tile(across, (5, 1)), axis=1) < 0.0)
+    assert (found.face[outward] == -1).all()
+    assert (found.face[inward] >= 0).all()
+    assert (np.sum(found.normal * directions, axis=1)[inward] > 0.0).all()

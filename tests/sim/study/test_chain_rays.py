@@ -106,3 +106,60 @@ def test_only_branches_and_float64_are_taken(bench):
     single = compile_scene(compiled.scene, precision="float32")
     with pytest.raises(SettingsError, match="precision: 'float32'"):
         make_chain(single, receiver, None)
+
+
+def chain_scene(*objects, ambient="reference"):
+    floor = scenes.SceneObject(
+        name="floor", shape=scenes.Rectangle(position=(0.0, 0.0, 0.0), size=(4.0, 4.0)),
+        material=scenes.Lambertian(reflectance=0.5),
+    )  # fmt: skip
+    return scenes.Scene(objects=(*objects, floor), emitters=(LAMP,), ambient=ambient)
+
+
+def slab(name, low, high, medium, **fields):
+    shape = scenes.Box(position=(0, 0.5 * (low + high), 0), size=(9.0, high - low, 9.0))
+    return scenes.SceneObject(
+        name=name, shape=shape, material=scenes.Dielectric(medium=medium, **fields)
+    )
+
+
+def test_a_chain_loses_on_its_way_what_single_rays_lose(compile_bench, rays):
+    # A coloured plate with a hidden sheet of another glass, above a floor in a coloured medium: on
+    # the floor's plane, beyond its edge, light has come no further than that.
+    dye = scenes.NapierianAbsorption(coefficient=0.8)
+    plate = slab("plate", 0.8, 1.2, "N-BK7", priority=1, absorption=dye)
+    sheet = slab("sheet", 0.9, 1.0, "SF11")
+    air = scenes.ConstantMedium(eta=1.0, absorption=scenes.NapierianAbsorption(coefficient=0.3))
+    compiled = compile_bench(chain_scene(plate, sheet, ambient=air))
+    receiver = lay_bins(compiled.scene, "floor", rows=2, columns=2)
+    paths = trace_compiled_rays(compiled, *rays)
+    for branches in (None, ("refract",) * 4):
+        landings = trace_chain(make_chain(compiled, receiver, branches), *rays)
+        inside = beyond = 0
+        for i, path in enumerate(paths):
+            assert path.events[:4] == ("refract", "pass", "pass", "refract")
+            if path.events[4] == "deposit":
+                inside += 1
+                assert landings.transmittance[i] == pytest.approx(path.transmittance, rel=1e-13)
+            elif landings.transmittance[i] > 0.0:
+                beyond += 1
+                way = path.points[4][1] / -path.directions[4][1]
+                before = np.prod(1.0 - path.absorptances[:4]) * np.prod(1.0 - path.reflectances[:4])
+                expected = float(before * np.exp(-0.3 * way))
+                assert landings.transmittance[i] == pytest.approx(expected, rel=1e-12)
+        assert inside > 1000
+        assert beyond > 10 or branches is None
+
+
+def test_a_mirror_past_the_receiver_takes_nothing(compile_bench):
+    # The plane of the floor is met before a dull mirror under it, beside the floor's edge.
+    mirror = scenes.SceneObject(
+        name="mirror", shape=scenes.Rectangle(position=(0.0, -1.0, 0.0), size=(50.0, 50.0)),
+        material=scenes.Mirror(reflectance=0.25),
+    )  # fmt: skip
+    compiled = compile_bench(chain_scene(mirror))
+    receiver = lay_bins(compiled.scene, "floor", rows=2, columns=2)
+    rays = np.array([[2.5, 1.0, 0.0]]), np.array([[0.0, -1.0, 0.0]]), np.array([550.0])
+    landings = trace_chain(make_chain(compiled, receiver, ()), *rays)
+    np.testing.assert_allclose(landings.place, [[2.5, 0.0]], atol=1e-15)
+    assert landings.transmittance[0] == 1.0
