@@ -8,7 +8,7 @@ import pytest
 import scenes
 import sim
 from sim import analytic
-from sim.analytic_polarisation import plate_stack_transmittance
+from sim.analytic_polarisation import plate_stack_transmittance, retarding_incidences
 from sim.device import start_device
 from sim.errors import SettingsError
 from sim.photons.lamps import compile_lamps
@@ -200,3 +200,69 @@ def test_reflectance_of_the_slab_is_that_of_analytic():
     assert 0.5 * 2.0 * R_S / (1.0 + R_S) == pytest.approx(
         float(analytic.slab_split(BREWSTER, 1.5).reflected), rel=1e-12
     )
+
+
+def looking_through_a_rhomb(lamp_light, axis):
+    """A camera that looks along +x through a filter and Fresnel's rhomb at a lamp.
+
+    Both reflections retard s, along z, by 45° over p.
+    """
+    eta, width = 1.51, 0.02
+    theta = float(retarding_incidences(math.pi / 4, eta)[1])
+    slope = 2.0 * width * math.tan(theta) * np.array([math.sin(theta), math.cos(theta)])
+    across = np.array([0.0, width])
+    corners = np.array([0.0 * across, across, slope + across, slope])
+    vertices = [(float(x), float(y), z) for x, y in corners for z in (-0.01, 0.01)]
+    middle = 0.5 * width
+    return scenes.Scene(
+        film=ONE_BAND,
+        camera=scenes.Camera(
+            position=(-0.1, middle, 0.0), look_at=(0.0, middle, 0.0), fov_deg=0.1
+        ),
+        objects=[
+            scenes.SceneObject(
+                name="filter",
+                shape=scenes.Disk(
+                    position=(-0.05, middle, 0.0), normal=(1.0, 0.0, 0.0), radius=0.01
+                ),
+                material=scenes.Polariser(axis=axis),
+            ),
+            scenes.SceneObject(
+                name="rhomb",
+                shape=scenes.Polyhedron(position=(0.0, 0.0, 0.0), vertices=vertices),
+                material=scenes.Dielectric(medium=scenes.ConstantMedium(eta=eta)),
+            ),
+        ],
+        emitters=[
+            scenes.RectangleLamp(
+                position=(0.3, 0.05, 0.0), normal=(-1.0, 0.0, 0.0), size=(0.2, 0.2), flux=1.0,
+                spectrum="E", polarisation=lamp_light,
+            )
+        ],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("ellipticity_deg", "angle_deg", "passing"),
+    [(45.0, 0.0, -1.0), (-45.0, 0.0, 1.0), (0.0, 45.0, 0.0)],
+)
+def test_the_eye_knows_left_from_right(ellipticity_deg, angle_deg, passing):
+    # Light goes along −x, p = d × s = +y. From V, the rhomb makes U = −V: right-handed light
+    # vibrates along (s − p)/√2 behind it, left-handed along (s + p)/√2; light at 45° becomes
+    # circular, and half of it passes either way.
+    light = scenes.Polarisation(
+        ellipticity_deg=ellipticity_deg, angle_deg=angle_deg, up=(0.0, 0.0, 1.0)
+    )
+    seen = []
+    for side in (1.0, -1.0):
+        scene = looking_through_a_rhomb(light, (0.0, side, 1.0))
+        picture = sim.render(scene, sim.RenderSettings(photons=64, passes=4, threads=2))
+        seen.append(float(picture.spectral_radiance.mean()))
+    # Both end faces let 1 − R through, and of what they send back and forth, twice reflected and
+    # retarded anew, R² at the most.
+    reflectance = (0.51 / 2.51) ** 2
+    assert (seen[0] - seen[1]) / sum(seen) == pytest.approx(passing, abs=2.5 * reflectance**2)
+    lit = float(scene.emitters[0].emission().band_flux(ONE_BAND.edges_nm)[0])
+    flux = lit / scene.emitters[0].emission().total
+    radiance = flux / (math.pi * 0.2 * 0.2) / 10.0
+    assert sum(seen) == pytest.approx(radiance * (1.0 - reflectance) ** 2, rel=2.5 * reflectance**2)
