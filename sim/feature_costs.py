@@ -45,7 +45,8 @@ REPEATS = 7
 
 
 def measure_costs(
-    plan: FeaturePlan, scene: scenes.Scene, settings: ResolvedSettings, *, device: str
+    plan: FeaturePlan, scene: scenes.Scene, settings: ResolvedSettings, *, device: str,
+    each: bool = True,
 ) -> dict[str, float]:
     """Kernel time with ÷ without each feature that can be timed on this scene, by name.
 
@@ -56,6 +57,7 @@ def measure_costs(
         scene: the scene; features of the camera are measured only if it has one.
         settings: of the rendering; its photons, passes and threads do not matter.
         device: where it runs.
+        each: whether features are timed one by one; else only the full kernels are.
     """
     build = (settings.precision, plan.features)
     full = (settings.precision, plan.complete("").features)
@@ -66,7 +68,8 @@ def measure_costs(
         switched = {
             one.feature.name: (one.on, other)
             for one in plan.decisions
-            if one.feature.kernel == kernel
+            if each
+            and one.feature.kernel == kernel
             and (not one.on or one.feature.separable)
             and (other := _switched(one.feature, build)) is not None
         }

@@ -10,6 +10,7 @@ picture's luminance. Time is CPU time.
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import functools
 import sys
 import time
@@ -36,6 +37,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="folder for study.csv and study.html (default: SCENE-study, here)")
     parser.add_argument("--quick", action="store_true",
                         help="about 2 minutes on 2 free cores, once compiled, instead of 20")
+    parser.add_argument("--axes", metavar="NAME,…",
+                        help="only these axes, such as photons,passes (default: all)")
     parser.add_argument("--seed", type=count, default=0, metavar="N",
                         help="the first of the seeds; every run has its own (default: 0)")
     parser.add_argument("--threads", type=count, metavar="N",
@@ -58,13 +61,32 @@ def run(arguments: argparse.Namespace) -> None:
     for path in paths:
         check_writable(path)
     threads = settings.resolved(scene).threads or 1
-    work = functools.partial(_studied, scene, arguments.quick, arguments.seed, threads)
+    names = _axes(arguments.axes)
+    work = functools.partial(_studied, scene, arguments.quick, names, arguments.seed, threads)
     for path, data in zip(paths, run_interruptibly(work), strict=True):
         write_whole(path, data)
     print(f"{' and '.join(str(path) for path in paths)}")
 
 
-def _studied(scene: Scene, quick: bool, seed: int, threads: int) -> tuple[bytes, bytes]:
+def _axes(text: str | None) -> tuple[str, ...] | None:
+    """Names of the axes asked for; None for all."""
+    import sim.study.standard_axes  # noqa: F401 - it registers the engine's axes
+    from sim.errors import SettingsError
+    from sim.study.axes import axes
+
+    if text is None:
+        return None
+    known = [axis.name for axis in axes()]
+    names = tuple(name.strip() for name in text.split(","))
+    for name in names:
+        if name not in known:
+            raise SettingsError("axes", name, ", ".join(known))
+    return names
+
+
+def _studied(
+    scene: Scene, quick: bool, names: tuple[str, ...] | None, seed: int, threads: int
+) -> tuple[bytes, bytes]:
     """The content of both files."""
     from sim.study.plan import FULL, QUICK
     from sim.study.report import encode_html
@@ -72,6 +94,8 @@ def _studied(scene: Scene, quick: bool, seed: int, threads: int) -> tuple[bytes,
     from sim.study.table import encode_csv
 
     plan = QUICK if quick else FULL
+    if names is not None:
+        plan = dataclasses.replace(plan, axes=names)
     outcome = run_study(scene, plan, seed=seed, threads=threads, tell=_Lines())
     return encode_csv(outcome), encode_html(outcome)
 

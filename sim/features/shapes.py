@@ -54,4 +54,5 @@ register(Feature(
     what="rays meet triangles of meshes and height fields, by a tree of boxes",
     judge=_some("mesh", "meshes", scenes.Triangulated),
     flag="meshes",
+    cost=Cost(1.09, "ball"),
 ))  # fmt: skip

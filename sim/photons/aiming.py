@@ -73,6 +73,9 @@ class Aim:
         frame: (3, 3) rows u, v, normal of the rectangle.
         half: (2,) half sizes of the rectangle [m].
         radius: of the sphere [m].
+        pivot: how far from a spherical lamp's centre the lines of one direction cross [m]: at the
+            glass that is aimed at, so that where a photon meets it hardly depends on where on
+            the lamp it left. 0: nowhere, they are parallel.
         specular: whether glass is aimed at.
         distribution: of an area's points, or of a cone's directions or a beam's profile once they
             are learned, see `sim.photons.lamp_structs`; empty where it is uniform.
@@ -84,6 +87,7 @@ class Aim:
     frame: FloatArray
     half: FloatArray
     radius: float
+    pivot: float
     specular: bool
     distribution: FloatArray
 
@@ -168,8 +172,6 @@ def find_aims(
     """
     if isinstance(emitter, scenes.Beam) or compiled.features.method.aiming == "unaimed":
         return [_base(1.0)]
-    # A spherical lamp draws cones from its centre: what its rays can hit is larger by its radius.
-    margin = emitter.radius if isinstance(emitter, scenes.SphereLamp) else 0.0
     found = list(enumerate(compiled.scene.objects))
     # A plane without end cannot be aimed at.
     finite = [(prim, one) for prim, one in found if not isinstance(one.shape, scenes.Plane)]
@@ -184,13 +186,13 @@ def find_aims(
     ]
     total = sum(weight for _, _, weight in receivers) + float(measures)
     aims = [_base(1.0 - SPECULAR_SHARE - RECEIVER_SHARE)]
-    aims += [_cone(SPECULAR_SHARE / len(specular), compiled, one, margin) for one in specular]
+    aims += [_cone(SPECULAR_SHARE / len(specular), compiled, one, emitter) for one in specular]
     for prim, one, weight in receivers:
         share = RECEIVER_SHARE * weight / total
         if isinstance(one.shape, scenes.Rectangle):
             aims.append(_area(share, compiled, prim, view))
         else:
-            aims.append(_cone(share, compiled, one, margin))
+            aims.append(_cone(share, compiled, one, emitter))
     return aims + (_sensors(compiled, RECEIVER_SHARE / total) if measures else [])
 
 
@@ -222,23 +224,43 @@ def flux_to_glass(compiled: CompiledScene, emitter: Any, aims: tuple[Aim, ...]) 
 
 def _base(share: float) -> Aim:
     """The lamp's own distribution."""
-    return Aim(share, int(AIM_BASE), np.zeros(3), np.eye(3), np.zeros(2), 0.0, False, np.zeros(0))
+    return Aim(
+        share, int(AIM_BASE), np.zeros(3), np.eye(3), np.zeros(2), 0.0, 0.0, False, np.zeros(0)
+    )
 
 
-def _cone(share: float, compiled: CompiledScene, item: scenes.SceneObject, margin: float) -> Aim:
-    """The cone around an object's bounding sphere, larger by `margin`."""
+def _cone(share: float, compiled: CompiledScene, item: scenes.SceneObject, emitter: Any) -> Aim:
+    """The cone around an object's bounding sphere, from a lamp; wide enough for all of the lamp."""
     assert not isinstance(item.shape, scenes.Plane)
     centre, radius = item.shape.bounding_sphere()
+    pivot = 0.0
+    if isinstance(emitter, scenes.SphereLamp):
+        distance = float(np.linalg.norm(np.subtract(centre, emitter.position)))
+        radius, pivot = _from_sphere(radius, emitter.radius, distance)
     return Aim(
         share,
         int(AIM_CONE),
         compiled.to_local(centre),
         np.eye(3),
         np.zeros(2),
-        radius + margin,
+        radius,
+        pivot,
         scenes.is_specular(item.material),
         np.zeros(0),
     )
+
+
+def _from_sphere(radius: float, lamp: float, distance: float) -> tuple[float, float]:
+    """Radius of the cone that holds every line from a spherical lamp to a sphere, and its pivot.
+
+    A line that passes the lamp's centre at h, the sphere at r - h at the most, crosses the
+    pivot's sphere of radius D in the direction asin((r - h)/D) + asin(h/D), which is widest for
+    h = -R. Parallel lines (no pivot) need asin((r + R)/D); so does a lamp that is too near.
+    """
+    if distance <= radius + lamp:
+        return radius + lamp, 0.0
+    widest = np.arcsin((radius + lamp) / distance) - np.arcsin(lamp / distance)
+    return float(distance * np.sin(widest)), distance
 
 
 def _area(share: float, compiled: CompiledScene, prim: int, view: View | None) -> Aim:
@@ -254,7 +276,7 @@ def _area(share: float, compiled: CompiledScene, prim: int, view: View | None) -
         if seen.sum() > 0.0:
             density = UNIFORM_PART * density + (1.0 - UNIFORM_PART) * seen / seen.sum()
     distribution = cells_to_distribution(density)
-    return Aim(share, int(AIM_AREA), centre, frame, half, 0.0, False, distribution)
+    return Aim(share, int(AIM_AREA), centre, frame, half, 0.0, 0.0, False, distribution)
 
 
 def _sensors(compiled: CompiledScene, share: float) -> list[Aim]:
@@ -264,7 +286,7 @@ def _sensors(compiled: CompiledScene, share: float) -> list[Aim]:
         Aim(
             share / len(compiled.scene.sensors), int(AIM_AREA),
             compiled.to_local(sensor.shape.position), sensor_frame(sensor), sensor_half(sensor),
-            0.0, False, even,
+            0.0, 0.0, False, even,
         )
         for sensor in compiled.scene.sensors
     ]

@@ -79,6 +79,26 @@ def make_density_functions(precision: str, *, distant: bool = True) -> SimpleNam
         return wp.normalize(target.centre - origin)
 
     @wp.func
+    def way_of(emitter: emitter_type, target: target_type, origin: vec3, direction: vec3):
+        """What a line of a spherical lamp has for a direction of the target's cone, and a factor.
+
+        Without a pivot it is the line's own. Else it is the direction from the lamp's centre in
+        which the line crosses the pivot's sphere, of radius L. That point is drawn with density
+        p dω/dA = p/L², the line's direction evenly in the cone under which it sees the lamp, of
+        solid angle Ω. Per dω dA cosα/(πR²), α between both directions, that makes
+        p πR²/(L² Ω cosα) = p (1 + √(1 − R²/L²))/(2 cosα).
+        """
+        if target.pivot == real(0.0):
+            return direction, real(1.0)
+        offset = origin - emitter.centre
+        b = wp.dot(offset, direction)
+        c = target.pivot * target.pivot - wp.dot(offset, offset)
+        way = (offset + direction * (wp.sqrt(b * b + c) - b)) * (real(1.0) / target.pivot)
+        sine = emitter.radius / target.pivot
+        factor = real(1.0) + wp.sqrt(real(1.0) - sine * sine)
+        return way, factor / (real(2.0) * wp.dot(way, direction))
+
+    @wp.func
     def square_of_cone(target: target_type, origin: vec3, direction: vec3):
         """The two numbers that the cone from `origin` turns into `direction`."""
         sin2_half = cone_of(target, origin)
@@ -149,10 +169,10 @@ def make_density_functions(precision: str, *, distant: bool = True) -> SimpleNam
             if emitter.kind == DISTANT:
                 return distant_density(lamps, emitter, target, origin, direction, drawn)
         if target.kind == AIM_CONE:
-            anchor = origin
             if emitter.kind == SPHERE_LAMP:
-                anchor = emitter.centre
-            return cone_density(lamps, target, anchor, direction, drawn)
+                way, factor = way_of(emitter, target, origin, direction)
+                return factor * cone_density(lamps, target, emitter.centre, way, drawn)
+            return cone_density(lamps, target, origin, direction, drawn)
         if target.kind == AIM_AREA:
             return area_density(lamps, emitter, target, origin, direction, drawn)
         return own_density(emitter, direction)
@@ -166,7 +186,8 @@ def make_density_functions(precision: str, *, distant: bool = True) -> SimpleNam
             if emitter.kind == DISTANT:
                 return square_of_line(target, origin, direction)
         if emitter.kind == SPHERE_LAMP:
-            return square_of_cone(target, emitter.centre, direction)
+            way, _factor = way_of(emitter, target, origin, direction)
+            return square_of_cone(target, emitter.centre, way)
         return square_of_cone(target, origin, direction)
 
     return SimpleNamespace(

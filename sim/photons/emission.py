@@ -128,6 +128,17 @@ def make_line_function(precision: str, *, distant: bool, masks: bool) -> object:
         return emitter.centre + to_world(x, y, depth, way) * emitter.radius
 
     @wp.func
+    def line_through(emitter: emitter_type, way: vec3, pivot: real, u3: real, u4: real):
+        """A line from the lamp through the point that lies `pivot` along `way` from its centre."""
+        sine = emitter.radius / pivot
+        sin2 = sine * sine
+        sin2_half = sin2 / (real(2.0) * (real(1.0) + wp.sqrt(real(1.0) - sin2)))
+        x, y, z = sample_cone(u3, u4, sin2_half)
+        direction = to_world(x, y, z, way)
+        depth = wp.sqrt(wp.max(sin2 - x * x - y * y, real(0.0)))
+        return emitter.centre + (way - direction * (z - depth)) * pivot, direction
+
+    @wp.func
     def sample_line(
         lamps: lamps_type, emitter: emitter_type, target: target_type, u0: real, u1: real,
         u3: real, u4: real,
@@ -154,6 +165,8 @@ def make_line_function(precision: str, *, distant: bool, masks: bool) -> object:
             line = point - origin
             return origin, line * (real(1.0) / wp.length(line))
         direction = sample_direction(emitter, target, origin, u0, u1)
+        if target.pivot > real(0.0):
+            return line_through(emitter, direction, target.pivot, u3, u4)
         if emitter.kind == SPHERE_LAMP:
             origin = point_of_sphere(emitter, direction, u3, u4)
         return origin, direction

@@ -85,6 +85,7 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         half_u: real
         half_v: real
         radius: real
+        pivot: real  # where a cone's directions cross, from a spherical lamp's centre; 0: nowhere
         first_cdf: int
         photons: real
 

@@ -133,7 +133,7 @@ class _Tables:
             self.streams.append(Stream(len(self.emitters) - 1, len(self.targets), count))
             functions = aim.distribution.reshape(-1, int(AIM_CELLS) + 1)
             first_cdf = self._add_distribution(*functions) if len(functions) else -1
-            shape = (aim.kind, aim.centre, aim.frame, *aim.half, aim.radius)
+            shape = (aim.kind, aim.centre, aim.frame, *aim.half, aim.radius, aim.pivot)
             self.targets.append((*shape, first_cdf, float(count)))
 
     def _add_distribution(self, *functions: FloatArray) -> int:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from sim.study.findings import Effect, effects, saving, slopes
+from sim.study.expected_slope import expected_slope
+from sim.study.findings import Effect, bias_shows_from, effects, saving, slopes
 from sim.study.outcome import AMOUNTS, Outcome
 from sim.study.setup import ResultKind
 from sim.study.statistics import Interval
@@ -103,15 +104,22 @@ def _limits(outcome: Outcome, result: ResultKind) -> list[str]:
         slope = laws["error"].slope
         said.append(
             f"Error falls as photons to the power {slope.value:.2f} "
-            f"[{slope.low:.2f}, {slope.high:.2f}]."
+            f"[{slope.low:.2f}, {slope.high:.2f}]" + _theory(outcome, result) + "."
         )
     if "photon noise" in laws:
         slope = laws["photon noise"].slope
         said.append(
             f"With the camera held still, noise falls to the power {slope.value:.2f} "
-            f"[{slope.low:.2f}, {slope.high:.2f}]: what is left is the photons'. The rest is the "
-            "camera's own sampling of pixels, which passes lower and photons do not."
+            f"[{slope.low:.2f}, {slope.high:.2f}]" + _theory(outcome, result)
+            + ": what is left is the photons'. The rest is the camera's own sampling of pixels, "
+            "which passes lower and photons do not."
         )
+        crossing = bias_shows_from(outcome)
+        if crossing is not None:
+            said.append(
+                f"From about {crossing:,.0f} photons a pass on, the kernel's bias is more than the "
+                "photons' noise."
+            )
     factors = saving(outcome, result)
     if factors:
         (few, at_few), (many, at_many) = factors[0], factors[-1]
@@ -123,6 +131,14 @@ def _limits(outcome: Outcome, result: ResultKind) -> list[str]:
             f"pass, and {at_few.value:.3g} [{at_few.low:.3g}, {at_few.high:.3g}] times at {few:,}."
         )
     return said
+
+
+def _theory(outcome: Outcome, result: ResultKind) -> str:
+    """What theory expects of the slope, in brackets."""
+    dimensions = outcome.dimensions.get(result)
+    if dimensions is None:
+        return ""
+    return f" (theory: {expected_slope(dimensions):.2f}, by {dimensions} dimensions)"
 
 
 def _by(found: list[Effect]) -> list[Effect]:

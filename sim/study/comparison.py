@@ -10,7 +10,7 @@ import numpy.typing as npt
 import scenes
 from sim.image.exposure import automatic_stops, scene_stops
 from sim.study.glass_chain import GlassChain
-from sim.study.metrics import centroid_error, ciede2000, energy_residual
+from sim.study.metrics import centroid_error, ciede2000, energy_residual, tempered_error
 from sim.study.outcome import Row
 from sim.study.plan import Point
 from sim.study.references import MESH, Reference
@@ -79,7 +79,7 @@ def compare_point(
 def _with_colours(
     row: Row, samples: list[Sample], reference: Reference, scene: scenes.Scene
 ) -> Row:
-    """The row with its colour differences at the scene's exposure, else at the reference's."""
+    """The row with a picture's other measures; colours as the scene, or reference, exposes them."""
     expected = xyz_to_linear_srgb(reference.values / LUMINOUS_EFFICACY_LM_W)
     stops = scene_stops(scene)
     stops = automatic_stops(expected) if stops is None else stops
@@ -91,8 +91,14 @@ def _with_colours(
         for one in samples
         if one.xyz is not None
     ]
+    tempered = [
+        tempered_error(one.xyz[..., 1], reference.values[..., 1])
+        for one in samples
+        if one.xyz is not None
+    ]
     return replace(
-        row, ciede_mean=_certain(np.array([one.mean for one in found])),
+        row, tempered=_certain(np.array(tempered)),
+        ciede_mean=_certain(np.array([one.mean for one in found])),
         ciede_p95=_certain(np.array([one.p95 for one in found])),
     )
 

@@ -12,7 +12,7 @@ from sim.study.outcome import PLAIN_LADDER, Outcome, Row, ladder_rows
 from sim.study.setup import ResultKind
 from sim.study.statistics import Interval, PowerLaw, fit_power_law, mean_interval
 
-__all__ = ["Effect", "effects", "saving", "slopes"]
+__all__ = ["Effect", "bias_shows_from", "effects", "saving", "slopes"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -21,8 +21,8 @@ def slopes(outcome: Outcome, result: ResultKind) -> dict[str, PowerLaw]:
     """Power laws of a result along the photons of a pass, fitted over all replicates.
 
     "error" and "time" are those of each replicate's error against photons and against CPU-seconds,
-    "noise" is that of the points' noise against photons, "photon noise" the same with the camera
-    held still.
+    "noise" is that of the points' noise against photons, "photon noise" that of each replicate's
+    deviation with the camera held still.
     """
     ladder = ladder_rows(outcome.of(result))
     photons = np.concatenate([np.full(row.replicates, row.photons) for row in ladder])
@@ -38,9 +38,22 @@ def slopes(outcome: Outcome, result: ResultKind) -> dict[str, PowerLaw]:
     if result == "picture" and outcome.photon_noise:
         still = [one for one in outcome.photon_noise if not one.plain]
         laws["photon noise"] = fit_power_law(
-            [one.photons for one in still], [one.noise for one in still]
+            np.concatenate([np.full(len(one.squares), one.photons) for one in still]),
+            np.sqrt(np.concatenate([one.squares for one in still])),
         )
     return {name: law for name, law in laws.items() if law is not None}
+
+
+def bias_shows_from(outcome: Outcome) -> float | None:
+    """Photons in a pass at which a picture's bias is as large as its photons' noise.
+
+    None where no bias shows, or where there is no law of that noise.
+    """
+    law = slopes(outcome, "picture").get("photon noise")
+    bias = outcome.centre("picture").errors.bias
+    if law is None or bias.low <= 0.0 or law.slope.value >= 0.0:
+        return None
+    return math.exp(law.log_x_mean + (math.log(bias.value) - law.log_y_mean) / law.slope.value)
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,6 +23,7 @@ __all__ = [
     "ciede2000",
     "energy_residual",
     "relative_l2",
+    "tempered_error",
 ]
 
 FloatArray = npt.NDArray[np.float64]
@@ -53,6 +54,23 @@ def relative_l2(estimate: npt.ArrayLike, reference: npt.ArrayLike) -> float:
     if norm == 0.0:
         raise SettingsError("reference", "all zero", "some light")
     return float(np.linalg.norm(estimated - expected)) / norm
+
+
+def tempered_error(estimate: npt.ArrayLike, reference: npt.ArrayLike) -> float:
+    """Root mean square of error / (reference + its mean), as `Accuracy` counts errors of pictures.
+
+    Args:
+        estimate: luminance of the pixels, any shape.
+        reference: same shape and unit, not all zero.
+
+    Raises:
+        SettingsError: the shapes differ, or the reference is dark.
+    """
+    estimated, expected = _alike(estimate, reference)
+    mean = float(np.mean(expected))
+    if mean == 0.0:
+        raise SettingsError("reference", "all zero", "some light")
+    return float(np.sqrt(np.mean(((estimated - expected) / (expected + mean)) ** 2)))
 
 
 def ciede2000(

@@ -49,6 +49,8 @@ class Row:
         cpu_s: CPU-seconds of a run.
         cpu_of_replicate: (R,) of each.
         parts_s: mean CPU-seconds of tracing, binning, mapping, gathering.
+        tempered: error of the picture as `--target-error` counts it: root mean square over the
+            pixels of the luminance's error, each over the pixel's luminance plus the mean.
         ciede_mean, ciede_p95: CIEDE2000 of the picture.
         centroid_arcsec: root mean square over the bands of where their light is, of bins.
         energy_residual: the largest share of the flux unaccounted for.
@@ -63,6 +65,7 @@ class Row:
     cpu_s: Interval
     cpu_of_replicate: FloatArray
     parts_s: tuple[float, ...]
+    tempered: Interval = NOWHERE
     ciede_mean: Interval = NOWHERE
     ciede_p95: Interval = NOWHERE
     centroid_arcsec: Interval = NOWHERE
@@ -116,6 +119,7 @@ class Outcome:
         rows: of all points.
         references: by result; one is missing if the result could not be measured.
         photon_noise: of pictures whose camera looks the same every time.
+        dimensions: by result, of how many numbers it depends what a photon lights.
     """
 
     scene: str
@@ -130,6 +134,7 @@ class Outcome:
     rows: tuple[Row, ...]
     references: dict[ResultKind, Reference]
     photon_noise: list[PhotonNoise] = field(default_factory=list)
+    dimensions: dict[ResultKind, int] = field(default_factory=dict)
 
     def of(self, result: ResultKind) -> list[Row]:
         """The rows of a result, the centre's first."""

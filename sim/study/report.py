@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 
 from sim.study.advice import advise
+from sim.study.expected_slope import expected_slope
 from sim.study.figures import draw_effects, draw_front, draw_parts, to_svg
 from sim.study.findings import effects, saving, slopes
 from sim.study.outcome import REFERENCE_SHARE, Outcome, Row
@@ -19,6 +20,14 @@ __all__ = ["encode_html"]
 _HEADINGS: dict[ResultKind, str] = {
     "bins": "Irradiance on a receiver, in exact bins", "picture": "The picture"
 }
+_TEMPERED = "as --target-error counts it"
+_THEORY = (
+    "Theory: a bin is an indicator over d sampled dimensions, and scrambled low-discrepancy points "
+    "leave it an error of the order N^(-1/2 - 1/(2d)) (He and Wang 2015, SIAM J. Numer. Anal. 53, "
+    "2488), once bins or gather discs hold many photons; while they hold few, errors fall as those "
+    "of random points do, as N^-1/2. A pair of dimensions is a direction or a place on the lamp, "
+    "one is the wavelength. Error holds the bias too, which no photons lower."
+)
 _STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; }
 table { border-collapse: collapse; font-size: 13px; margin: 1em 0; }
@@ -114,14 +123,16 @@ def _about_reference(outcome: Outcome, result: ResultKind) -> list[str]:
 
 
 def _pareto_table(best: list[Row], outcome: Outcome) -> str:
-    head = ("point", "photons, of the default", "passes, of the default", "CPU-seconds", "error")
+    head = ("point", "photons, of the default", "passes, of the default", "CPU-seconds", "error",
+            _TEMPERED)
     rows = [
         (row.name, _multiple(row.photons / outcome.default_photons),
          _multiple(row.passes / outcome.default_passes), f"{row.cpu_s.value:.3g}",
-         _interval(row.errors.error))
+         _interval(row.errors.error), _interval(row.tempered))
         for row in best
     ]
-    return _table(head, rows)
+    columns = len(head) - (best[0].result != "picture")
+    return _table(head[:columns], [row[:columns] for row in rows])
 
 
 def _slope_table(outcome: Outcome, result: ResultKind) -> str:
@@ -130,11 +141,17 @@ def _slope_table(outcome: Outcome, result: ResultKind) -> str:
         "noise": "noise against photons",
         "photon noise": "noise against photons, camera held still",
     }
-    laws = slopes(outcome, result)
-    return _table(
-        ("fitted power law", "slope, 95% interval", "points"),
-        [(names[name], _interval(law.slope), str(law.points)) for name, law in laws.items()],
-    )
+    expected = {"noise": "", "error": "", "photon noise": "", "time": ""}
+    dimensions = outcome.dimensions.get(result)
+    if dimensions is not None:
+        theory = f"{expected_slope(dimensions):.3f}, by {dimensions} dimensions"
+        expected |= {name: theory for name in expected if name != "time"}
+    rows = [
+        (names[name], _interval(law.slope), expected[name], str(law.points))
+        for name, law in slopes(outcome, result).items()
+    ]
+    head = ("fitted power law", "slope, 95% interval", "theory", "points")
+    return _table(head, rows) + _paragraph(_THEORY)
 
 
 def _saving_table(outcome: Outcome, result: ResultKind) -> str:
@@ -145,7 +162,7 @@ def _saving_table(outcome: Outcome, result: ResultKind) -> str:
 
 
 def _effect_table(outcome: Outcome, result: ResultKind) -> str:
-    own = ("ΔE₀₀ mean", "ΔE₀₀ p95") if result == "picture" else ("centroid [″]",)
+    own = (_TEMPERED, "ΔE₀₀ mean", "ΔE₀₀ p95") if result == "picture" else ("centroid [″]",)
     head = ("value", "photons for the same error", "time", "noise", "bias", *own, "energy")
     centre = outcome.centre(result)
     rows = [(centre.name, "1", "1", *_measures(centre))]
@@ -157,7 +174,9 @@ def _effect_table(outcome: Outcome, result: ResultKind) -> str:
 
 
 def _measures(row: Row) -> tuple[str, ...]:
-    own = (row.ciede_mean, row.ciede_p95) if row.result == "picture" else (row.centroid_arcsec,)
+    own: tuple[Interval, ...] = (row.centroid_arcsec,)
+    if row.result == "picture":
+        own = (row.tempered, row.ciede_mean, row.ciede_p95)
     return (
         _interval(row.errors.noise), _interval(row.errors.bias), *(_interval(one) for one in own),
         f"{row.energy_residual:.1g}",

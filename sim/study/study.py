@@ -14,6 +14,7 @@ import sim.study.standard_axes as standard
 from sim.photons.photon_batch import PhotonBatch
 from sim.settings import RenderSettings
 from sim.study.comparison import compare_point, compared
+from sim.study.expected_slope import sampled_dimensions
 from sim.study.glass_chain import GlassChain, find_chain
 from sim.study.outcome import LADDER, PLAIN_LADDER, Outcome, PhotonNoise
 from sim.study.picture_reference import picture_reference
@@ -110,6 +111,7 @@ def run_study(scene: scenes.Scene, plan: Plan, *, seed: int, threads: int, tell:
         default_photons=int(default.photons or 1), default_passes=int(default.passes or 1),
         coverage=exposed, bins_text=_bins_text(workshop.chain), rows=tuple(rows),
         references=references, photon_noise=photon_noise,
+        dimensions=_dimensions(scene, workshop.chain),
     )
 
 
@@ -174,7 +176,7 @@ def _photon_noise(
     left between them is the photons'.
     """
     camera_seed = seeds.take()
-    replicates = max(3, plan.replicates // 2)
+    replicates = plan.replicates
     found = []
     for point in points:
         if point.axis not in (CENTRE, LADDER, PLAIN_LADDER) or "picture" not in point.results:
@@ -185,7 +187,10 @@ def _photon_noise(
             sample = workshop.run(point.setup, seeds.take(), ("picture",), camera_seed=camera_seed)
             colours.append(compared(sample, "picture"))
         mean = np.mean(colours, axis=0)
-        off = np.array([np.sum((one - mean) ** 2) for one in colours]) / np.sum(mean**2)
+        square = float(np.sum(mean**2))
+        if square == 0.0:  # So few photons that no pixel has met one.
+            continue
+        off = np.array([np.sum((one - mean) ** 2) for one in colours]) / square
         found.append(
             PhotonNoise(
                 point.axis == PLAIN_LADDER, int(point.setup.settings.photons or 1),
@@ -193,6 +198,20 @@ def _photon_noise(
             )
         )
     return sorted(found, key=lambda one: (one.plain, one.photons))
+
+
+def _dimensions(scene: scenes.Scene, chain: GlassChain | None) -> dict[ResultKind, int]:
+    """What theory expects slopes by: of the bins' lamp, and of the picture's hardest one."""
+    shining = [
+        one.name for one in scene.emitters
+        if one.emission().band_flux(scene.film.edges_nm).any()
+    ]
+    found: dict[ResultKind, int] = {
+        "picture": max(sampled_dimensions(scene, name) for name in shining)
+    }
+    if chain is not None:
+        found["bins"] = sampled_dimensions(scene, chain.emitter)
+    return found
 
 
 def _goal(bundles: list[_Bundle], result: ResultKind) -> float:

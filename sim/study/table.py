@@ -21,6 +21,10 @@ _INTERVALS: dict[str, tuple[str, Callable[[Row], Interval]]] = {
     "noise": ("its part by chance", lambda r: r.errors.noise),
     "bias": ("its part that replicates share; 0 if none shows", lambda r: r.errors.bias),
     "cpu_s": ("CPU-seconds of a run over all threads, without compiling", lambda r: r.cpu_s),
+    "tempered_error": (
+        "root mean square of the picture's error as --target-error counts it, each pixel's over "
+        "its luminance plus the mean", lambda r: r.tempered
+    ),
     "ciede2000_mean": ("mean colour difference of the picture", lambda r: r.ciede_mean),
     "ciede2000_p95": ("95% of the pixels differ less", lambda r: r.ciede_p95),
     "centroid_arcsec": (

@@ -47,7 +47,8 @@ typedef struct { Vec centre; double radius; int prim; } Sphere;
 typedef struct { Vec centre, u, v, normal; double half_u, half_v, radius2; int prim; } Flat;
 typedef struct { Vec normal; double offset; } Plane;
 typedef struct { Vec centre; int first, count, prim; } Polyhedron;
-typedef struct { int material, inside, dispersive; } Body; /* outside is medium 0 */
+/* Outside of all bodies is medium 0, the ambient one: none of the benchmark's touch. */
+typedef struct { int material, inside, dispersive; } Body;
 typedef struct { int formula; double c[8]; } Medium;
 typedef struct {
     Vec centre, u, v, axis;
@@ -57,7 +58,7 @@ typedef struct {
 } Emitter;
 typedef struct {
     Vec centre, u, v, normal;
-    double half_u, half_v, radius, photons;
+    double half_u, half_v, radius, pivot, photons;
     const double *cdf; /* NULL: even */
     int kind;
 } Target;
@@ -263,7 +264,15 @@ static inline double target_density(
     if (target->kind == AIM_AREA) return area_density(emitter, target, origin, direction, drawn);
     if (target->kind == AIM_BASE) return own_density(emitter, direction);
     Vec way = sub(target->centre, emitter->kind == SPHERE_LAMP ? emitter->centre : origin);
-    double sin2_half = cone_of(target, way), density = 1.0 / (4.0 * PI * sin2_half), s, t;
+    double factor = 1.0;
+    if (target->pivot > 0.0) {
+        Vec offset = sub(origin, emitter->centre), line = direction;
+        double b = dot(offset, line), c = target->pivot * target->pivot - dot(offset, offset);
+        double sine = emitter->radius / target->pivot;
+        direction = scale(along(offset, line, sqrt(b * b + c) - b), 1.0 / target->pivot);
+        factor = (1.0 + sqrt(1.0 - sine * sine)) / (2.0 * dot(direction, line));
+    }
+    double sin2_half = cone_of(target, way), density = factor / (4.0 * PI * sin2_half), s, t;
     Vec axis = sin2_half < 1.0 ? normalize(way) : vec(0.0, 0.0, 1.0), u, v;
     if (sin2_half < 1.0 && !drawn) {
         Vec chord = sub(direction, axis);
@@ -314,7 +323,15 @@ static inline void sample_line(
         ray->direction = normalize(sub(point, origin));
     } else {
         ray->direction = sample_direction(emitter, target, origin, u[0], u[1]);
-        if (sphere) origin = on_sphere(emitter, ray->direction, u[3], u[4]);
+        if (target->pivot > 0.0) {
+            Vec way = ray->direction;
+            double sine = emitter->radius / target->pivot, sin2 = sine * sine;
+            Vec local = sample_cone(u[3], u[4], sin2 / (2.0 * (1.0 + sqrt(1.0 - sin2))));
+            double depth = sqrt(larger(sin2 - local.x * local.x - local.y * local.y, 0.0));
+            ray->direction = to_world(local, way);
+            origin = along(emitter->centre, along(way, ray->direction, depth - local.z),
+                           target->pivot);
+        } else if (sphere) origin = on_sphere(emitter, ray->direction, u[3], u[4]);
     }
     ray->origin = origin;
 }
@@ -684,9 +701,10 @@ static void read_scene(const char *path, Scene *scene) {
          a->flux = take(&p); a->first_target = take_int(&p); a->target_count = take_int(&p);
          a->first_segment = take_int(&p); a->segment_count = take_int(&p);
          a->cdf = scene->cdf + take_int(&p););
-    READ(targets, target_count, 18,
+    READ(targets, target_count, 19,
          a->kind = take_int(&p); a->centre = take_vec(&p); a->u = take_vec(&p); a->v = take_vec(&p);
          a->normal = take_vec(&p); a->half_u = take(&p); a->half_v = take(&p); a->radius = take(&p);
+         a->pivot = take(&p);
          int first_cdf = take_int(&p); a->cdf = first_cdf < 0 ? NULL : scene->cdf + first_cdf;
          a->photons = take(&p););
     READ(segments, segment_count, 4,

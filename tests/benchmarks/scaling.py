@@ -1,25 +1,20 @@
 """How the cost of a picture grows with photons, pixels and bands.
 
-``python tests/benchmarks/scaling.py [-o PLOT.svg]`` renders the gallery's lens, one thing varied
-at a time, and prints the CPU seconds of one pass (the difference of two runs, so that compiling
-and starting cancel out) and the exponent of each law, with its 95 % interval. Asked for: at most
-linear in photons and in pixels, less than linear in bands.
+Renders the gallery's lens, one thing varied at a time: the CPU seconds of one pass (the difference
+of two runs, so that compiling and starting cancel out), and the exponent of each law with its 95 %
+interval. Asked for: at most linear in photons and in pixels, less than linear in bands.
 """
 
-import argparse
-import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from history import Measure
 from scipy import stats
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1]))
-
-import scenes  # noqa: E402
-import sim  # noqa: E402
+import scenes
+import sim
 
 SCENE = "lens"
 PHOTONS, WIDTH, BANDS = 60_000, 320, 31
@@ -98,20 +93,19 @@ def plot(laws: list[Law], path: Path) -> None:
     figure.savefig(path)
 
 
-def main() -> None:
-    """Run the benchmark from the command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", type=Path, metavar="PLOT.svg")
-    options = parser.parse_args()
+def measures(path: Path | None = None) -> list[Measure]:
+    """The laws' exponents, plotted if there is a path for it."""
     laws = measure()
+    if path is not None:
+        plot(laws, path)
+    asked = {"photons": "<= 1", "pixels": "<= 1", "bands": "< 1"}
+    found = []
     for law in laws:
         slope, half = law.exponent()
-        print(f"{law.name}: exponent {slope:.2f} ± {half:.2f}")
-        for size, seconds in zip(law.sizes, law.seconds, strict=True):
-            print(f"  {size:>9,}  {seconds:.3f} s of CPU time a pass")
-    if options.output is not None:
-        plot(laws, options.output)
-
-
-if __name__ == "__main__":
-    main()
+        seconds = ", ".join(f"{one:.3g}" for one in law.seconds)
+        note = f"{law.sizes[0]} to {law.sizes[-1]}: {seconds} CPU-s a pass"
+        name = f"cost of a pass as {law.name} to the power"
+        found.append(
+            Measure(name, SCENE, slope, slope - half, slope + half, asked[law.name], note)
+        )
+    return found

@@ -60,8 +60,8 @@ def octahedron():
     return np.array([corners * s if s.prod() > 0 else corners[::-1] * s for s in signs])
 
 
-def traced(shape, origins, directions, **options):
-    scene = scenes.Scene(objects=(scenes.SceneObject(name="it", shape=shape, material=GLASS),))
+def traced(shape, origins, directions, *, material=GLASS, **options):
+    scene = scenes.Scene(objects=(scenes.SceneObject(name="it", shape=shape, material=material),))
     wavelengths = np.full(len(origins), WAVELENGTH_NM)
     return trace_compiled_rays(compile_scene(scene), origins, directions, wavelengths, **options)
 
@@ -130,6 +130,35 @@ def test_smooth_normals_approach_the_sphere_with_the_square_of_the_facets(tmp_pa
     for normals, rate in (("file", 2.0), ("smooth", 2.0), ("flat", 1.0)):
         measured = np.log2(error(4, normals) / error(5, normals))
         assert measured == pytest.approx(rate, abs=0.35), normals
+
+
+def test_a_mirror_of_smooth_triangles_sends_no_light_behind_itself(tmp_path) -> None:
+    # On all of the disc, to grazing: there the smooth normal would reflect into the facet. Each ray
+    # leaves after one reflection, as off the ball, and where it is not that near the limb (3 h,
+    # h = π/32) in the ball's direction, to h²: twice the normal's h²/8, over the limb's cosine.
+    h = np.pi / 32
+    file = write_obj(tmp_path / "ball.obj", cut(octahedron(), 4, on_sphere=True), normals=True)
+    mesh = scenes.Mesh(position=(0.0, 0.0, 0.0), file=file)
+    ball = scenes.Sphere(position=(0.0, 0.0, 0.0), radius=1.0)
+    rng = np.random.default_rng(5)
+    # Half of the rays where it can happen: where −d·n is less than half that of the facet.
+    r = np.sqrt(np.where(np.arange(600) < 300, rng.uniform(size=600), rng.uniform(0.99, 1.0, 600)))
+    phi = rng.uniform(0.0, 2.0 * np.pi, 600)
+    origins = np.stack([r * np.cos(phi), r * np.sin(phi), np.full(600, -3.0)], axis=1)
+    turn = scenes.rotation_matrix((31.0, 17.0, 5.0))
+    origins, directions = origins @ turn.T, np.tile(turn[:, 2], (600, 1))
+    paths = [
+        traced(one, origins, directions, material=scenes.Mirror(reflectance=1.0))
+        for one in (mesh, ball)
+    ]
+    limb = 1.0 - r**2 < (3.0 * h) ** 2
+    for near_limb, path, exact in zip(limb, *paths, strict=True):
+        assert len(path.events) <= 2
+        if not near_limb:
+            assert path.events == exact.events
+            off = np.linalg.norm(path.directions[-1] - exact.directions[-1])
+            assert off < h**2 / abs(np.dot(exact.points[1], exact.directions[0]))
+    assert 300 < limb.sum() < 400
 
 
 def test_light_in_the_mesh_of_a_box_is_reflected_totally_as_in_the_box(tmp_path) -> None:

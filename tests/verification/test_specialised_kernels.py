@@ -56,11 +56,29 @@ def bench():
     return scenes.Scene(objects=objects, emitters=(lamp,))
 
 
+def pond():
+    """Waves on water that lies on its bed, of triangles both."""
+    wave = scenes.Wave(amplitude=0.03, period=0.7, direction_deg=20)
+    grid = {"position": (0, 0.5, 0), "size": (2, 2), "cells": (24, 24), "waves": [wave]}
+    bed = scenes.HeightField(position=(0, 0, 0), size=(2, 2), heights=((0.0,) * 3,) * 3)
+    objects = (
+        scenes.SceneObject(
+            name="water", shape=scenes.HeightField(depth=0.5, **grid),
+            material=scenes.Dielectric(medium="water"),
+        ),
+        scenes.SceneObject(name="bed", shape=bed, material=scenes.Lambertian(reflectance=0.5)),
+    )  # fmt: skip
+    lamp = scenes.Point(position=(0.2, 3, 0.1), flux=1.0, spectrum="D65")
+    return scenes.Scene(objects=objects, emitters=(lamp,))
+
+
 @pytest.mark.parametrize(
     ("make", "lacks"),
     [
-        (plain, ("interfaces", "absorption", "finishes", "polyhedra", "lenses", "tabulated")),
-        (bench, ("lenses", "tabulated", "air_conversion")),
+        (plain, ("interfaces", "absorption", "finishes", "polyhedra", "lenses", "tabulated",
+                 "meshes")),
+        (bench, ("lenses", "meshes", "tabulated", "air_conversion")),
+        (pond, ("spheres", "flats", "polyhedra", "lenses", "absorption", "finishes")),
     ],
 )
 def test_photons_are_the_full_kernels(make, lacks):

@@ -100,6 +100,20 @@ class References(HTMLParser):
         self.found += [v for name, v in attrs if name in ("src", "href", "xlink:href") and v]
 
 
+def test_only_the_axes_asked_for_are_measured(study, monkeypatch):
+    asked = []
+
+    def run_study(scene, plan, **_):
+        asked.append(plan.axes)
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(study.parent)
+    monkeypatch.setattr("sim.study.study.run_study", run_study)
+    for extra in ([], ["--axes", "photons, photons × passes"]):
+        assert main(["study", "bench.toml", "-o", "other", *extra]) == 130
+    assert asked == [None, ("photons", "photons × passes")]
+
+
 def test_the_page_is_whole_and_needs_nothing_else(study):
     text = (study / "study.html").read_text("utf-8")
     page = References()
@@ -131,6 +145,7 @@ def test_the_page_is_whole_and_needs_nothing_else(study):
         (["bench.toml", "--threads", "0"], "threads"),
         (["dark.toml"], "emitters"),
         (["bench.toml", "-o", "taken"], "study.csv"),
+        (["bench.toml", "--axes", "photons,colour"], "axes: 'colour'"),
     ],
 )
 def test_what_cannot_be_done_is_told_in_a_line(study, capfd, monkeypatch, arguments, message):

@@ -8,7 +8,7 @@ import pytest
 from sim.study.advice import advise
 from sim.study.caustic_mesh import CausticMesh, Resolution
 from sim.study.comparison import compare_point
-from sim.study.findings import effects, saving, slopes
+from sim.study.findings import bias_shows_from, effects, saving, slopes
 from sim.study.outcome import Outcome, PhotonNoise, Row
 from sim.study.picture_reference import picture_reference
 from sim.study.plan import QUICK, Point
@@ -19,6 +19,7 @@ from sim.study.references import (
     mean_and_noise,
     mesh_reference,
 )
+from sim.study.report import encode_html
 from sim.study.sample import Costs, Sample
 from sim.study.setup import SeedSource
 from sim.study.statistics import certain_errors, gram_matrix, mean_interval, separate_errors
@@ -107,7 +108,32 @@ def test_with_the_camera_held_still_the_slope_is_the_photons_own(outcome):
     picture = dataclasses.replace(outcome, rows=rows, photon_noise=[*still, *plain])
     law = slopes(picture, "picture")["photon noise"]
     assert law.slope.value == pytest.approx(-0.6)
-    assert law.points == 3
+    assert law.points == 9
+
+
+def test_it_is_told_from_how_many_photons_on_the_bias_shows(outcome):
+    # Noise is N^-0.6, the centre's bias B: they meet at N = B^(-1/0.6).
+    bias = 0.02
+    still = [PhotonNoise(False, n, 8, np.full(3, n**-1.2)) for n in (250, 1000, 4000)]
+    centre = make_row("centre", "centre", noise=1e-4, bias=bias)
+    rows = tuple(
+        dataclasses.replace(row, result="picture")
+        for row in (centre, *outcome.rows[1:])
+    )
+    picture = dataclasses.replace(outcome, rows=rows, photon_noise=still)
+    assert bias_shows_from(picture) == pytest.approx(bias ** (-1 / 0.6), rel=1e-3)
+    unbiased = dataclasses.replace(outcome.rows[0], result="picture")
+    picture = dataclasses.replace(picture, rows=(unbiased, *rows[1:]))
+    assert bias_shows_from(picture) is None
+
+
+def test_theory_stands_beside_the_slopes(outcome):
+    known = dataclasses.replace(outcome, dimensions={"bins": 3})
+    # -1/2 - 1/6
+    assert "(theory: -0.67, by 3 dimensions)" in "\n".join(advise(known, "bins"))
+    assert "theory" not in "\n".join(advise(outcome, "bins"))
+    page = encode_html(known).decode()
+    assert page.count("-0.667, by 3 dimensions") == 2  # of error and noise, not of time
 
 
 def test_advice_follows_from_the_numbers(outcome):

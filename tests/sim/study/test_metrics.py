@@ -3,7 +3,13 @@ import pytest
 
 from sim.errors import SettingsError
 from sim.photons.energy import EnergyBooks
-from sim.study.metrics import centroid_error, ciede2000, energy_residual, relative_l2
+from sim.study.metrics import (
+    centroid_error,
+    ciede2000,
+    energy_residual,
+    relative_l2,
+    tempered_error,
+)
 from spectra import xyz_to_linear_srgb
 
 
@@ -14,6 +20,13 @@ def test_relative_l2_is_the_norm_of_the_difference():
         relative_l2(np.zeros(3), np.ones((3, 1)))
     with pytest.raises(SettingsError, match="reference: 'all zero'"):
         relative_l2(np.ones(3), np.zeros(3))
+
+
+def test_the_tempered_error_weighs_a_pixel_by_itself_and_the_mean():
+    # Reference 1 and 3, mean 2: √(((0.3/(1 + 2))² + (1/(3 + 2))²)/2) = √((0.01 + 0.04)/2).
+    assert tempered_error([1.3, 2.0], [1.0, 3.0]) == pytest.approx(np.sqrt(0.025))
+    with pytest.raises(SettingsError, match="reference: 'all zero'"):
+        tempered_error(np.ones(3), np.zeros(3))
 
 
 def grey(lightness):
