@@ -45,7 +45,7 @@ register(Feature(
     what="light carries how much more of it is s than p",
     judge=_judge_polarisation,
     flag="polarisation",
-    cost=Cost(1.00, "prism"),
+    cost=Cost(1.37, "prism"),
     separable=True,
 ))  # fmt: skip
 
@@ -84,7 +84,7 @@ register(Feature(
     what="photons carry Stokes vectors, turned into each plane of incidence",
     judge=_judge_photons,
     flag="stokes",
-    cost=Cost(1.00, "prism"),
+    cost=Cost(1.05, "prism"),
     separable=True,
 ))  # fmt: skip
 
@@ -93,7 +93,7 @@ register(Feature(
     what="camera paths carry what the eye would see of each Stokes vector",
     judge=_judge_camera,
     flag="camera_stokes",
-    cost=Cost(1.00, "prism"),
+    cost=Cost(1.01, "prism"),
     kernel="camera",
     separable=True,
 ))  # fmt: skip
