@@ -89,3 +89,27 @@ def test_white_under_glass_is_as_bright_as_the_sky(assert_mean, direct_light):
     assert_mean(found, 1.0, slack=1.1e-3)
     assert np.std(found[:, 1]) < 0.1
     assert all(abs(one.energy.residual) < 1e-12 for one in pictures)
+
+
+def test_white_things_that_light_one_another_are_as_bright_as_the_sky(assert_mean):
+    # ρ = 1 everywhere: whatever light meets on its way, it sends on all of it, and L is the same
+    # everywhere. The two balls and the glass between them see each other, so that it takes bounces.
+    white = scenes.Lambertian(reflectance=1.0)
+    balls = tuple(
+        scenes.SceneObject(shape=scenes.Sphere(position=(x, 0.5, 0.0), radius=0.3), material=white)
+        for x in (-0.62, 0.62)
+    )
+    # Straight at a place on the left ball that the glass and the right ball take much sky from.
+    camera = scenes.Camera(position=(-0.4, 0.5, 1.5), look_at=(-0.42, 0.5, 0.22), fov_deg=3.0)
+    pictures = [
+        render(
+            (BALL, *balls), camera, size=(4, 4), photons=30_000, passes=1, radius=0.02, seed=seed,
+            bounces=bounces,
+        )
+        for bounces in (100, 0)
+        for seed in range(8)
+    ]
+    found = np.array([one.spectral_radiance.mean(axis=(0, 1)) for one in pictures]) / SPECTRAL
+    assert_mean(found[:8], 1.0, slack=1e-3)
+    assert found[8:].mean() < 0.97  # without bounces it is darker: the test can tell
+    assert all(abs(one.energy.residual) < 1e-12 for one in pictures)
