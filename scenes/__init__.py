@@ -42,6 +42,8 @@ from scenes.media import CauchyMedium, ConstantMedium, SellmeierMedium, TableMed
 from scenes.metals import MetalTable
 from scenes.objects import SceneObject
 from scenes.pixel_filter import BoxFilter, GaussianFilter, TentFilter
+from scenes.polarisation import Polarisation
+from scenes.polariser import Polariser
 from scenes.reflectance import ReflectanceTable
 from scenes.scene import RenderDefaults, Scene
 from scenes.sensors import IrradianceSensor, RaySensor
@@ -95,6 +97,8 @@ __all__ = [
     "NapierianAbsorption",
     "Plane",
     "Point",
+    "Polarisation",
+    "Polariser",
     "Polyhedron",
     "Prism",
     "Problem",

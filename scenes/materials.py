@@ -12,6 +12,7 @@ from scenes.errors import Problem, refusal
 from scenes.media import DescribedMedium, MediumSpec, coloured, resolve_medium
 from scenes.metals import MetalSpec, resolve_metal
 from scenes.model import SceneModel
+from scenes.polariser import Polariser
 from scenes.reflectance import Reflectance, depends_on_wavelength, reflectance_at
 from spectra import Conductor, Medium, absorbing_media, published_absorption
 
@@ -125,11 +126,12 @@ class Absorber(SceneModel):
 
 
 def is_specular(material: object) -> bool:
-    """Whether a surface sends light on in single directions, by refraction or reflection."""
-    return isinstance(material, Dielectric | Mirror | Metal)
+    """Whether a surface sends light on in single directions: refracted, reflected or straight."""
+    return isinstance(material, Dielectric | Mirror | Metal | Polariser)
 
 
 Material = Annotated[
-    Dielectric | Lambertian | Mirror | Metal | Absorber, Field(discriminator="type")
+    Dielectric | Lambertian | Mirror | Metal | Polariser | Absorber,
+    Field(discriminator="type"),
 ]
 """Any material."""

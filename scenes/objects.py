@@ -7,7 +7,8 @@ from pydantic import Field, model_validator
 from scenes.errors import Problem, refusal
 from scenes.materials import Dielectric, Material
 from scenes.model import SceneModel
-from scenes.shapes import Shape, Triangulated
+from scenes.polariser import Polariser
+from scenes.shapes import Disk, Plane, Rectangle, Shape, Triangulated
 
 __all__ = ["SceneObject"]
 
@@ -32,4 +33,18 @@ class SceneObject(SceneModel):
                 f" allowed: {allowed}"
             )
             raise refusal(Problem("material.type", message, self.material.type, allowed))
+        return self
+
+    @model_validator(mode="after")
+    def _polariser_is_a_sheet(self) -> Self:
+        if not isinstance(self.material, Polariser):
+            return self
+        if not isinstance(self.shape, Rectangle | Disk | Plane):
+            allowed = "rectangle, disk or plane"
+            message = f"a polariser is a sheet, and a {self.shape.type} is none; allowed: {allowed}"
+            raise refusal(Problem("shape.type", message, self.shape.type, allowed))
+        if self.material.absorbing_axis(self.shape.normal) is None:
+            allowed = "any direction but the sheet's normal"
+            message = f"is perpendicular to the sheet; allowed: {allowed}"
+            raise refusal(Problem("material.axis", message, self.material.axis, allowed))
         return self

@@ -23,6 +23,7 @@ class Precision:
         name: "float32" or "float64".
         real: Warp scalar type.
         vec3: Warp vector type of three reals.
+        vec4: Warp vector type of four reals.
         mat33: Warp matrix type of three by three reals.
         dtype: the NumPy scalar type that arrays of `real` copy from.
     """
@@ -30,6 +31,7 @@ class Precision:
     name: str
     real: Any
     vec3: Any
+    vec4: Any
     mat33: Any
     dtype: type[np.floating[Any]]
 
@@ -38,7 +40,7 @@ class Precision:
 def precision_types(name: str) -> Precision:
     """Return the types of the precision called `name` ("float32" or "float64")."""
     if name == "float64":
-        return Precision(name, wp.float64, wp.vec3d, wp.mat33d, np.float64)
+        return Precision(name, wp.float64, wp.vec3d, wp.vec4d, wp.mat33d, np.float64)
     if name == "float32":
-        return Precision(name, wp.float32, wp.vec3f, wp.mat33f, np.float32)
+        return Precision(name, wp.float32, wp.vec3f, wp.vec4f, wp.mat33f, np.float32)
     raise ValueError(f"unknown precision {name!r}; allowed: 'float32', 'float64'")

@@ -22,13 +22,16 @@ class RayPath:
         directions: (n, 3), unit, of each segment.
         events: n strings, what happened at the end of each segment: "refract", "reflect",
             "total internal reflection", "mirror" (a metal too), "pass" (a face with the same
-            medium on both sides, hidden by another solid), "deposit", "absorb", "escape", or
-            "limit" if the ray was still going after `max_interactions`.
+            medium on both sides, hidden by another solid), "polarise" (a polariser), "deposit",
+            "absorb", "escape", or "limit" if the ray was still going after `max_interactions`.
         objects: n names of the objects met, "" where nothing was.
-        reflectances: (n,) mean reflectance of s and p light at each vertex; 0 where the ray
-            ends.
+        reflectances: (n,) reflectance at each vertex, of light as it is polarised there; 0 where
+            the ray ends.
         absorptances: (n,) fraction of the flux lost on each segment to the medium, and to the
-            mirror or metal at its end.
+            mirror, metal or polariser at its end.
+        polarisations: (n, 3), (q, u, v) on each segment, the Stokes vector over the flux.
+        frames: (n, 3), unit, what q and u are told by: s, across the ray, with p = direction × s.
+            See `sim.analytic_polarisation`.
         wavelength_nm: of the ray.
     """
 
@@ -38,6 +41,8 @@ class RayPath:
     objects: tuple[str, ...]
     reflectances: FloatArray
     absorptances: FloatArray
+    polarisations: FloatArray
+    frames: FloatArray
     wavelength_nm: float
 
     @property
@@ -48,8 +53,21 @@ class RayPath:
     @property
     def transmittance(self) -> float:
         """Fraction of the flux that takes this path."""
-        factors = [
+        return float(np.prod(self._factors))
+
+    @property
+    def stokes(self) -> FloatArray:
+        """(n, 4), Stokes vector at the start of each segment, over the flux that set out."""
+        flux = np.cumprod([1.0, *self._factors[:-1]])
+        vectors: FloatArray = flux[:, None] * np.c_[np.ones(len(flux)), self.polarisations]
+        return vectors
+
+    @property
+    def _factors(self) -> FloatArray:
+        """(n,) part of the flux that goes on from each vertex along this path."""
+        shares = [
             {"refract": 1.0 - r, "reflect": r}.get(event, 1.0)
             for event, r in zip(self.events, self.reflectances, strict=True)
         ]
-        return float(np.prod(factors) * np.prod(1.0 - self.absorptances))
+        factors: FloatArray = np.array(shares) * (1.0 - self.absorptances)
+        return factors

@@ -29,6 +29,7 @@ from sim.scene_structs import (
     LAMBERTIAN,
     METAL,
     MIRROR,
+    POLARISER,
     SHAPE_FLAT,
     SHAPE_LENS,
     SHAPE_MESH,
@@ -136,6 +137,7 @@ def compile_scene(
     device: str = "cpu",
     features: Features | None = None,
     method: Method | None = None,
+    polarisation: str = "auto",
 ) -> CompiledScene:
     """Lay `scene` out as device arrays.
 
@@ -145,11 +147,14 @@ def compile_scene(
         device: where the arrays live.
         features: what the kernels must handle; None: all that could change anything.
         method: how light is followed; None: as a rendering does, or as `features` say.
+        polarisation: the setting of this name, where `features` are None.
     """
     origin = find_origin(scene)
     media = collect_media(scene)
     if features is None:
-        features = find_features(scene, media.media, media.air_powers)
+        features = find_features(
+            scene, media.media, media.air_powers, polarisation=polarisation
+        )
     if method is not None:
         features = replace(features, method=method)
     structs = make_scene_structs(precision)
@@ -165,6 +170,9 @@ def compile_scene(
     neighbours = np.array([*itertools.chain(*near), -1], dtype=np.int32)
     data.neighbours = wp.array(neighbours, dtype=int, device=device)
     data.touch = touch
+    data.absorbing_axes = wp.array(
+        _absorbing_axes(scene), dtype=structs.vec3, device=device
+    )
     fill_optics(data, media, precision, device, disperses=features.dispersion)
     return CompiledScene(scene, precision, device, features, media.media, origin, data)
 
@@ -263,6 +271,8 @@ def _bodies(
         elif isinstance(material, scenes.Mirror | scenes.Metal):
             kind = MIRROR if isinstance(material, scenes.Mirror) else METAL
             varies = material.is_coloured
+        elif isinstance(material, scenes.Polariser):
+            kind = POLARISER
         else:
             kind = LAMBERTIAN if isinstance(material, scenes.Lambertian) else ABSORBER
         count = len(near[prim])
@@ -271,3 +281,13 @@ def _bodies(
         )
         first += count
     return rows
+
+
+def _absorbing_axes(scene: scenes.Scene) -> FloatArray:
+    """(n, 3), each object's absorbing axis, 0 where it has none; never of length zero."""
+    axes = np.zeros((max(1, len(scene.objects)), 3))
+    for prim, item in enumerate(scene.objects):
+        if isinstance(item.material, scenes.Polariser):
+            assert isinstance(item.shape, scenes.Rectangle | scenes.Disk | scenes.Plane)
+            axes[prim] = item.material.absorbing_axis(item.shape.normal)
+    return axes

@@ -19,6 +19,7 @@ __all__ = [
     "LAMBERTIAN",
     "METAL",
     "MIRROR",
+    "POLARISER",
     "SELLMEIER",
     "SHAPE_FLAT",
     "SHAPE_LENS",
@@ -34,6 +35,7 @@ LAMBERTIAN = wp.constant(1)
 ABSORBER = wp.constant(2)
 MIRROR = wp.constant(3)
 METAL = wp.constant(4)
+POLARISER = wp.constant(5)
 
 SELLMEIER = wp.constant(0)
 CAUCHY = wp.constant(1)
@@ -105,7 +107,7 @@ def make_shape_structs(precision: str) -> SimpleNamespace:
 def make_ray_structs(precision: str) -> SimpleNamespace:
     """Structs of a ray and of what it meets: Ray, Hit, Interaction."""
     types = precision_types(precision)
-    real, vec3 = types.real, types.vec3
+    real, vec3, vec4 = types.real, types.vec3, types.vec4
 
     @wp.struct
     class Ray:
@@ -144,6 +146,11 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
         At a boundary: `eta` is η_i/η_t, `reflectance` the mean of R_s and R_p, `total` 1 where
         the reflection is total (then `refracted` is unset). A mirror or a metal is `opaque`, and
         reflects what it does not absorb totally.
+
+        Where light is followed polarised, `matrix` is (mean, half, cosine, sine) of the reflection
+        and `together` √(T_s T_p), see `sim.polarised_light`, which finds `reflectance` and the
+        surface's part of `absorbed`. A polariser `filters`: what its matrix would reflect, along
+        the absorbing axis, it absorbs.
         """
 
         event: int
@@ -160,10 +167,13 @@ def make_ray_structs(precision: str) -> SimpleNamespace:
         dispersive: int
         total: int
         opaque: int
+        filters: int
         absorbed: real
         alpha: real
         eta: real
         reflectance: real
+        matrix: vec4
+        together: real
         reflected: vec3
         refracted: vec3
 
@@ -179,7 +189,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         (one a scene object), Medium, Finish and Scene.
     """
     types = precision_types(precision)
-    real = types.real
+    real, vec3 = types.real, types.vec3
     shapes, rays = make_shape_structs(precision), make_ray_structs(precision)
     sphere, flat, plane = shapes.Sphere, shapes.Flat, shapes.Plane
     polyhedron, lens = shapes.Polyhedron, shapes.Lens
@@ -237,6 +247,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
         neighbours: wp.array(dtype=int)
         media: wp.array(dtype=Medium)
         finishes: wp.array(dtype=Finish)
+        absorbing_axes: wp.array(dtype=vec3)  # one an object, 0 where it is no polariser
         coefficients: wp.array2d(dtype=real)
         knots_nm: wp.array(dtype=real)
         cubics: wp.array2d(dtype=real)
@@ -249,6 +260,7 @@ def make_scene_structs(precision: str) -> SimpleNamespace:
     return SimpleNamespace(
         real=real,
         vec3=types.vec3,
+        vec4=types.vec4,
         mat33=types.mat33,
         Body=Body,
         Medium=Medium,

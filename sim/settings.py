@@ -24,6 +24,7 @@ __all__ = [
     "PRESETS",
     "DirectLight",
     "FeatureChoice",
+    "Polarisation",
     "Precision",
     "Preset",
     "RenderSettings",
@@ -33,6 +34,7 @@ __all__ = [
 Precision: TypeAlias = Literal["float32", "float64"]
 DirectLight: TypeAlias = Literal["lamps", "photons"]
 FeatureChoice: TypeAlias = Literal["required", "all"]
+Polarisation: TypeAlias = Literal["auto", "averaged", "s-p", "stokes"]
 Preset: TypeAlias = Literal["draft", "standard", "reference"]
 
 PRESETS: Final[dict[str, dict[str, float]]] = {
@@ -68,6 +70,7 @@ _WHOLE_NUMBERS: Final = {
 _POSITIVE_NUMBERS: Final = {"radius": math.inf, "target_error": 1.0, "time_budget": math.inf}
 _PRECISIONS: Final = ("float32", "float64")
 _DIRECT_LIGHTS: Final = ("lamps", "photons")
+_POLARISATIONS: Final = ("auto", "averaged", "s-p", "stokes")
 _FEATURE_CHOICES: Final = ("required", "all")
 _LARGEST_TOLERANCE: Final = 0.5
 _DEVICE: Final = re.compile(r"cpu|cuda:\d+")
@@ -93,6 +96,9 @@ class RenderSettings:
             Zwicker 2011); 1 keeps it.
         direct_light: What shows light that comes straight from a lamp: "lamps", by shadow rays,
             or "photons", from the photon map like all other light.
+        polarisation: How polarised light is followed: "auto" as the scene requires; "averaged" as
+            natural light at every surface; "s-p" by the shares of s and p, right where planes of
+            incidence do not differ along a path; "stokes" by Stokes vectors, always right.
         max_interactions: Surfaces that one path may meet before it is culled.
         bounces: Diffuse surfaces that light may be reflected by on its way to the one that is
             seen; 0 shows what lamps, glass and mirrors send there.
@@ -117,6 +123,7 @@ class RenderSettings:
     radius: float | None = None
     alpha: float = 2 / 3
     direct_light: DirectLight = "lamps"
+    polarisation: Polarisation = "auto"
     max_interactions: int | None = None
     bounces: int | None = None
     seed: int = 0
@@ -145,6 +152,9 @@ class RenderSettings:
             raise SettingsError("precision", self.precision, "'float32' or 'float64'")
         if self.direct_light not in _DIRECT_LIGHTS:
             raise SettingsError("direct_light", self.direct_light, "'lamps' or 'photons'")
+        if self.polarisation not in _POLARISATIONS:
+            names = ", ".join(repr(name) for name in _POLARISATIONS)
+            raise SettingsError("polarisation", self.polarisation, names)
         if self.features not in _FEATURE_CHOICES:
             raise SettingsError("features", self.features, "'required' or 'all'")
         tolerance = _finite_number(self.omission_tolerance)

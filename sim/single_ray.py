@@ -3,9 +3,8 @@
 It advances by the same `interact` step as photons and camera paths.
 """
 
-import functools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,109 +14,14 @@ import warp as wp
 import scenes
 from sim.device import start_device
 from sim.errors import SettingsError
-from sim.features import Features
 from sim.ray_path import RayPath
 from sim.scene_data import CompiledScene, compile_scene
 from sim.scene_media import require_known
-from sim.transport import (
-    EVENT_ABSORB,
-    EVENT_BOUNDARY,
-    EVENT_DEPOSIT,
-    EVENT_PASS,
-    make_transport,
-)
+from sim.single_ray_kernel import EVENT_NAMES, REFLECT, REFRACT, make_trace_single
 
 __all__ = ["trace_compiled_rays", "trace_ray"]
 
 FloatArray = npt.NDArray[np.float64]
-
-_ESCAPE = 0
-_REFRACT = 1
-_REFLECT = 2
-_TOTAL = 3
-_DEPOSIT = 4
-_ABSORB = 5
-_MIRROR = 6
-_PASS = 7
-_NAMES = (
-    "escape", "refract", "reflect", "total internal reflection", "deposit", "absorb", "mirror",
-    "pass",
-)  # fmt: skip
-
-
-@functools.cache
-def make_trace_single(precision: str, features: Features) -> Any:
-    """Kernel that follows one ray a thread and records its vertices."""
-    transport = make_transport(precision, features)
-    real, vec3, interact = transport.real, transport.vec3, transport.interact
-    media_indices = transport.media_indices
-    scene_type, ray_type = transport.Scene, transport.Ray
-
-    @wp.kernel(module="unique", enable_backward=False)
-    def trace_single(
-        scene: scene_type,
-        origins: wp.array(dtype=vec3),
-        directions: wp.array(dtype=vec3),
-        wavelengths_nm: wp.array(dtype=real),
-        reflects: wp.array(dtype=int),
-        out_points: wp.array2d(dtype=vec3),
-        out_directions: wp.array2d(dtype=vec3),
-        out_events: wp.array2d(dtype=int),
-        out_prims: wp.array2d(dtype=int),
-        out_reflectances: wp.array2d(dtype=real),
-        out_absorbed: wp.array2d(dtype=real),
-        out_counts: wp.array(dtype=int),
-    ):
-        i = wp.tid()
-        ray = ray_type()
-        ray.origin = origins[i]
-        ray.direction = wp.normalize(directions[i])
-        ray.prim = -1
-        ray.face = -1
-        ray.prim2 = -1
-        indices = media_indices(scene, wavelengths_nm[i])
-        count = int(0)
-        boundaries = int(0)
-        for step in range(out_events.shape[1]):
-            met = interact(scene, ray, indices)
-            out_directions[i, step] = ray.direction
-            out_points[i, step] = met.point
-            out_prims[i, step] = met.prim
-            out_absorbed[i, step] = met.absorbed
-            count += 1
-            ray.origin = met.point
-            ray.prim = met.prim
-            ray.face = met.face
-            ray.prim2 = met.prim2
-            ray.face2 = met.face2
-            if met.event == EVENT_PASS:
-                out_events[i, step] = _PASS
-            elif met.event != EVENT_BOUNDARY:
-                out_events[i, step] = _ESCAPE
-                if met.event == EVENT_DEPOSIT:
-                    out_events[i, step] = _DEPOSIT
-                elif met.event == EVENT_ABSORB:
-                    out_events[i, step] = _ABSORB
-                break
-            else:
-                out_reflectances[i, step] = met.reflectance
-                out_events[i, step] = _REFRACT
-                if met.total == 1:
-                    out_events[i, step] = _TOTAL
-                    if met.opaque == 1:
-                        out_events[i, step] = _MIRROR
-                    ray.direction = met.reflected
-                else:
-                    ray.direction = met.refracted
-                    if boundaries < reflects.shape[0]:
-                        if reflects[boundaries] == 1:
-                            out_events[i, step] = _REFLECT
-                            ray.direction = met.reflected
-                boundaries += 1
-        out_counts[i] = count
-
-    return trace_single
-
 
 def trace_ray(
     scene: scenes.Scene,
@@ -127,6 +31,7 @@ def trace_ray(
     *,
     max_interactions: int = 256,
     branches: Sequence[str] = (),
+    polarisation: scenes.Polarisation | None = None,
     precision: str = "float64",
     device: str = "cpu",
 ) -> RayPath:
@@ -142,13 +47,15 @@ def trace_ray(
             "reflect"; the ray refracts at all later ones. Where reflection is total there is
             no other branch, and the entry is passed over. ("refract", "reflect") in a water
             drop is the primary rainbow.
+        polarisation: of the light that starts; None: natural light.
         precision: "float64" or "float32".
         device: "cpu", or a CUDA device.
 
     Raises:
         spectra.WavelengthOutOfRange: a medium has no index at the wavelength.
         SettingsError: origin or direction is not three finite numbers, direction is zero, a
-            branch is neither "refract" nor "reflect", or max_interactions is below 1.
+            branch is neither "refract" nor "reflect", max_interactions is below 1, or the
+            polarisation's `up` is parallel to the ray.
         DeviceError: the device does not exist.
     """
     compiled = _compiled(scene, precision, start_device(device))
@@ -159,6 +66,7 @@ def trace_ray(
         np.array([wavelength_nm], dtype=np.float64),
         max_interactions=max_interactions,
         branches=branches,
+        polarisation=polarisation,
     )[0]
 
 
@@ -182,6 +90,7 @@ def trace_compiled_rays(
     *,
     max_interactions: int = 256,
     branches: Sequence[str] = (),
+    polarisation: scenes.Polarisation | None = None,
 ) -> list[RayPath]:
     """Follow many rays, (n, 3) origins [m] and directions and (n,) wavelengths; see `trace_ray`."""
     if max_interactions < 1:
@@ -189,6 +98,7 @@ def trace_compiled_rays(
     reflects = _reflects(branches)
     has_air = compiled.features.air_conversion
     require_known(compiled.scene, compiled.media, wavelengths_nm, has_air=has_air)
+    light, ups = _start(polarisation, directions)
     structs, device, rays = compiled.structs, compiled.device, len(origins)
     size = (rays, max_interactions)
     local = compiled.to_local(origins)
@@ -198,9 +108,13 @@ def trace_compiled_rays(
     prims = wp.zeros(size, dtype=int, device=device)
     reflectances = wp.zeros(size, dtype=structs.real, device=device)
     absorbed = wp.zeros(size, dtype=structs.real, device=device)
+    lights = wp.zeros(size, dtype=structs.vec3, device=device)
+    frames = wp.zeros(size, dtype=structs.vec3, device=device)
     counts = wp.zeros(rays, dtype=int, device=device)
     wp.launch(
-        make_trace_single(compiled.precision, compiled.features),
+        make_trace_single(
+            compiled.precision, replace(compiled.features, polarisation=True, stokes=True)
+        ),
         dim=rays,
         inputs=[
             compiled.data,
@@ -208,13 +122,18 @@ def trace_compiled_rays(
             wp.array(directions, dtype=structs.vec3, device=device),
             wp.array(wavelengths_nm, dtype=structs.real, device=device),
             wp.array(reflects, dtype=int, device=device),
+            structs.vec3(*light),
+            wp.array(ups, dtype=structs.vec3, device=device),
         ],
-        outputs=[points, ways, events, prims, reflectances, absorbed, counts],
+        outputs=[
+            points, ways, events, prims, reflectances, absorbed, lights, frames, counts,
+        ],
         device=device,
     )
     record = _Record(
         compiled, local, points.numpy(), ways.numpy(), events.numpy(), prims.numpy(),
-        reflectances.numpy(), absorbed.numpy(), counts.numpy(), wavelengths_nm,
+        reflectances.numpy(), absorbed.numpy(), lights.numpy(), frames.numpy(), counts.numpy(),
+        wavelengths_nm,
     )
     return [record.path(i) for i in range(rays)]
 
@@ -231,6 +150,8 @@ class _Record:
     prims: npt.NDArray[Any]
     reflectances: npt.NDArray[Any]
     absorbed: npt.NDArray[Any]
+    lights: npt.NDArray[Any]
+    frames: npt.NDArray[Any]
     counts: npt.NDArray[Any]
     wavelengths_nm: FloatArray
 
@@ -239,7 +160,7 @@ class _Record:
         n = int(self.counts[i])
         points = np.vstack([self.origins[i][None], self.points[i, :n]]).astype(np.float64)
         directions = self.ways[i, :n].astype(np.float64)
-        events = [_NAMES[event] for event in self.events[i, :n]]
+        events = [EVENT_NAMES[event] for event in self.events[i, :n]]
         if events[-1] == "escape":
             points[-1] = self._exit_point(points[-2], directions[-1])
         elif events[-1] not in ("deposit", "absorb"):
@@ -252,6 +173,8 @@ class _Record:
             objects=tuple(names[prim] if prim >= 0 else "" for prim in self.prims[i, :n]),
             reflectances=self.reflectances[i, :n].astype(np.float64),
             absorptances=self.absorbed[i, :n].astype(np.float64),
+            polarisations=self.lights[i, :n].astype(np.float64),
+            frames=self.frames[i, :n].astype(np.float64),
             wavelength_nm=float(self.wavelengths_nm[i]),
         )
 
@@ -265,12 +188,28 @@ class _Record:
         return exit_point
 
 
+def _start(
+    polarisation: scenes.Polarisation | None, directions: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """(q, u, v) of the light that starts, and (n, 3) what its angles are counted from."""
+    if polarisation is None:
+        return np.zeros(3), np.broadcast_to([0.0, 1.0, 0.0], directions.shape)
+    ups = []
+    for direction in directions:
+        up = polarisation.reference(direction / np.linalg.norm(direction))
+        if up is None:
+            allowed = "a direction not parallel to the ray's"
+            raise SettingsError("polarisation.up", polarisation.up, allowed)
+        ups.append(up)
+    return polarisation.stokes(), np.array(ups)
+
+
 def _reflects(branches: Sequence[str]) -> npt.NDArray[np.int32]:
     """1 for every boundary at which the reflected branch is followed, 0 for the other."""
-    allowed = (_NAMES[_REFRACT], _NAMES[_REFLECT])
+    allowed = (EVENT_NAMES[REFRACT], EVENT_NAMES[REFLECT])
     if isinstance(branches, str) or not all(branch in allowed for branch in branches):
         raise SettingsError("branches", branches, f"a sequence of {allowed[0]!r} or {allowed[1]!r}")
-    return np.array([branch == _NAMES[_REFLECT] for branch in branches], dtype=np.int32)
+    return np.array([branch == EVENT_NAMES[REFLECT] for branch in branches], dtype=np.int32)
 
 
 def _three_numbers(name: str, value: npt.ArrayLike) -> FloatArray:

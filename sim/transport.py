@@ -24,15 +24,7 @@ from sim.geometry.mesh import facet_normal, intersect_mesh, mesh_normal
 from sim.geometry.polyhedron import intersect_polyhedron
 from sim.geometry.sphere import intersect_sphere
 from sim.optics.absorption import absorbed_fraction
-from sim.optics.conductor import conductor_reflectance
-from sim.optics.dielectric import (
-    fresnel_reflectance,
-    reflect,
-    refract,
-    renormalize,
-    schlick_reflectance,
-    sin2_theta_t,
-)
+from sim.optics.dielectric import reflect, renormalize
 from sim.optics.dispersion import tabulated_index
 from sim.path_media import make_media_functions
 from sim.scene_structs import (
@@ -40,9 +32,11 @@ from sim.scene_structs import (
     LAMBERTIAN,
     METAL,
     MIRROR,
+    POLARISER,
     SHAPE_MESH,
     make_scene_structs,
 )
+from sim.surfaces import make_surfaces
 from sim.surroundings import make_surroundings
 
 __all__ = [
@@ -197,7 +191,7 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
         `facet_toward(scene, interaction, direction)`, the normal that no smoothing has bent.
     """
     structs = make_scene_structs(precision)
-    real, vec3 = structs.real, structs.vec3
+    real, vec3, vec4 = structs.real, structs.vec3, structs.vec4
     scene_type, ray_type = structs.Scene, structs.Ray
     interaction_type, hit_type = structs.Interaction, structs.Hit
     intersect = make_intersect(precision, features)
@@ -205,44 +199,20 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
     indices_type, absorption_of = media.Indices, media.absorption_of
     wavelength_of = media.wavelength_of
     surroundings_of = make_surroundings(precision, features).surroundings_of
+    polarised = features.polarises
+    surfaces = make_surfaces(precision, features)
+    cross, finish_matrix = surfaces.cross, surfaces.finish
 
     @wp.func
-    def cross_boundary(direction: vec3, normal: vec3, eta: real):
-        """Total or not, reflectance, and the two directions at a boundary of relative index η."""
-        cos_theta_i = wp.min(-wp.dot(direction, normal), real(1.0))
-        reflected = reflect(direction, normal, cos_theta_i)
-        if wp.static(not features.reflected_branches):
-            return 0, real(0.0), reflected, direction
-        if eta == real(1.0):
-            return 0, real(0.0), reflected, direction  # exactly, at any angle
-        sin2_t = sin2_theta_t(cos_theta_i, eta)
-        if sin2_t >= real(1.0):
-            return 1, real(1.0), reflected, reflected
-        cos_theta_t = wp.sqrt(real(1.0) - sin2_t)
-        reflectance = real(0.0)
-        if wp.static(features.method.fresnel == "exact"):
-            r_s, r_p = fresnel_reflectance(cos_theta_i, cos_theta_t, eta)
-            reflectance = real(0.5) * (r_s + r_p)
-        if wp.static(features.method.fresnel == "schlick"):
-            reflectance = schlick_reflectance(cos_theta_i, cos_theta_t, eta)
-        refracted = refract(direction, normal, cos_theta_i, cos_theta_t, eta)
-        return 0, reflectance, reflected, refracted
-
-    @wp.func
-    def finish_reflectance(
-        scene: scene_type, finish: int, cos_theta_i: real, indices: indices_type, medium: int
-    ):
-        """Of a mirror by its table, of a metal by Fresnel's equations with a complex index."""
+    def finish_constants(scene: scene_type, finish: int, indices: indices_type, medium: int):
+        """A mirror's reflectance and −1, by its table; a metal's n and k, relative to `medium`."""
         row = scene.finishes[finish]
         wavelength_nm = wavelength_of(indices)
         value = tabulated_index(scene.knots_nm, scene.cubics, row.first, row.count, wavelength_nm)
         if row.k_count == 0:
-            return value
+            return value, real(-1.0)
         k = tabulated_index(scene.knots_nm, scene.cubics, row.k_first, row.k_count, wavelength_nm)
-        r_s, r_p = conductor_reflectance(
-            cos_theta_i, value / indices[medium], k / indices[medium]
-        )
-        return real(0.5) * (r_s + r_p)
+        return value / indices[medium], k / indices[medium]
 
     @wp.func
     def facet_toward(scene: scene_type, met: interaction_type, direction: vec3):
@@ -316,7 +286,7 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                         met.event = EVENT_PASS
                         met.dispersive = 0
                     eta = indices[met.medium] / indices[beyond]
-                    total, reflectance, reflected, refracted = cross_boundary(
+                    total, matrix, together, reflected, refracted = cross(
                         ray.direction, met.normal, eta
                     )
                     if wp.static(features.meshes):
@@ -324,12 +294,15 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                         passes = total == 1 or wp.dot(refracted, facet) < real(0.0)
                         if not (passes and wp.dot(reflected, facet) > real(0.0)):
                             met.normal = facet
-                            total, reflectance, reflected, refracted = cross_boundary(
+                            total, matrix, together, reflected, refracted = cross(
                                 ray.direction, facet, eta
                             )
                     met.eta = eta
                     met.total = total
-                    met.reflectance = reflectance
+                    met.reflectance = matrix[0]
+                    if wp.static(polarised):
+                        met.matrix = matrix
+                        met.together = together
                     met.reflected = reflected
                     met.refracted = refracted
             if wp.static(features.interfaces):
@@ -360,9 +333,22 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
                     met.reflectance = real(1.0)
                     met.reflected = reflect(ray.direction, met.normal, cos_theta_i)
                     met.refracted = met.reflected
-                    met.absorbed = real(1.0) - finish_reflectance(
-                        scene, body.finish, cos_theta_i, indices, met.medium
-                    )
+                    value, k = finish_constants(scene, body.finish, indices, met.medium)
+                    if wp.static(not polarised):
+                        met.absorbed = real(1.0) - finish_matrix(cos_theta_i, value, k)[0]
+                    if wp.static(polarised):
+                        met.matrix = finish_matrix(cos_theta_i, value, k)
+            if wp.static(features.polarisers):
+                if body.material == POLARISER:
+                    met.event = EVENT_BOUNDARY
+                    met.filters = 1
+                    met.eta = real(1.0)
+                    met.reflected = ray.direction
+                    met.refracted = ray.direction
+                    if wp.static(not polarised):
+                        met.absorbed = real(0.5)
+                    if wp.static(polarised):
+                        met.matrix = vec4(real(0.5), real(-0.5), real(0.0), real(0.0))
         if wp.static(features.absorption):
             met.alpha = absorption_of(indices, met.medium)
             lost = absorbed_fraction(met.alpha, hit.t)

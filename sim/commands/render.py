@@ -65,6 +65,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--bounces", type=int, metavar="N",
                         help="diffuse surfaces that light may be reflected by on its way to the "
                              "one that is seen (default: the scene's, else 0)")
+    parser.add_argument("--polarisation", choices=("auto", "averaged", "s-p", "stokes"),
+                        default="auto",
+                        help="how polarised light is followed: not at all, by its shares of s and "
+                             "p, or by Stokes vectors (default: auto, as the scene requires)")
     parser.add_argument("--precision", choices=("float32", "float64"),
                         help="arithmetic of tracing (default: float64 on cpu, else float32)")
     parser.add_argument("--seed", type=count, default=0, metavar="N",

@@ -10,9 +10,10 @@ import sim.features.lamps
 import sim.features.light
 import sim.features.matter
 import sim.features.media
+import sim.features.polarised
 import sim.features.sensors
 import sim.features.shapes  # noqa: F401 (importing registers)
-from sim.features.flags import Features
+from sim.features.flags import Features, LightMode
 from sim.features.plan import Decision, FeaturePlan, find_features, judge_features, plan_features
 from sim.features.registry import (
     BOUND_UNIT,
@@ -30,6 +31,6 @@ from sim.features.registry import (
 
 __all__ = [
     "BOUND_UNIT", "RECORDED_ON", "Build", "Cost", "Decision", "Feature", "FeaturePlan", "Features",
-    "Subject", "Verdict", "find_features", "judge_features", "needed", "null", "plan_features",
-    "register", "registered",
+    "LightMode", "Subject", "Verdict", "find_features", "judge_features", "needed", "null",
+    "plan_features", "register", "registered",
 ]  # fmt: skip

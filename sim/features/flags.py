@@ -1,10 +1,14 @@
 """The flags that shape compiled code: one for each feature that kernels can do without."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 from sim.method import DEFAULT_METHOD, Method
 
-__all__ = ["Features"]
+__all__ = ["Features", "LightMode"]
+
+LightMode = Literal["averaged", "s-p", "stokes"]
+"""How kernels follow the polarisation of light, see `sim.polarised_light`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +26,10 @@ class Features:
         interfaces: solids can touch, nest or overlap.
         absorption: some medium absorbs.
         finishes: light can meet a mirror or a metal.
+        polarisers: light can meet a polariser.
+        polarisation: light carries how much more of it is s than p, from surface to surface.
+        stokes: photons carry Stokes vectors, as their planes of incidence differ.
+        camera_stokes: camera paths do.
         interreflection: diffuse surfaces light one another.
         reflected_branches: boundaries can reflect.
         dispersion: boundaries can part light by its wavelength.
@@ -51,6 +59,10 @@ class Features:
     interfaces: bool = True
     absorption: bool = True
     finishes: bool = True
+    polarisers: bool = True
+    polarisation: bool = True
+    stokes: bool = True
+    camera_stokes: bool = True
     interreflection: bool = True
     reflected_branches: bool = True
     dispersion: bool = True
@@ -67,3 +79,14 @@ class Features:
     visible_lamps: bool = True
     media_count: int = 1
     method: Method = DEFAULT_METHOD
+
+    @property
+    def polarises(self) -> bool:
+        """Whether light carries any polarisation at all: Fresnel's formulas alone know of it."""
+        return self.polarisation and self.method.fresnel == "exact"
+
+    def light_of(self, kernel: Literal["photons", "camera"]) -> LightMode:
+        """How photons (and single rays) or camera paths are followed."""
+        if not self.polarises:
+            return "averaged"
+        return "stokes" if (self.stokes if kernel == "photons" else self.camera_stokes) else "s-p"

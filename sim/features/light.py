@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenes import Dielectric, Disk, Lambertian, Metal, Mirror, Plane, Rectangle
+from scenes import Dielectric, Disk, Lambertian, Plane, Rectangle, is_specular
 from sim.features.boundary_error import path_error, relative_variations
 from sim.features.registry import (
     Cost,
@@ -117,7 +117,7 @@ def _judge_undispersed(subject: Subject) -> Verdict:
             medium = item.material.resolved()
             if medium == subject.media[0] or not (ambient or varies.get(medium, False)):
                 return needed(f"light keeps its colours together in {item.name}")
-        elif isinstance(item.material, Mirror | Metal) and not item.material.is_coloured:
+        elif is_specular(item.material) and not getattr(item.material, "is_coloured", False):
             return needed(f"light keeps its colours together on {item.name}")
     for i, j in subject.near_pairs:
         pair = subject.scene.objects[i], subject.scene.objects[j]

@@ -81,3 +81,17 @@ register(Feature(
     flag="finishes",
     cost=Cost(1.00, "ball"),
 ))  # fmt: skip
+
+
+def _judge_polarisers(subject: Subject) -> Verdict:
+    count = len(subject.polarisers)
+    return needed(f"{count} polarisers") if count else null("no polariser")
+
+
+register(Feature(
+    name="polarisers",
+    what="sheets that let one way of vibrating through",
+    judge=_judge_polarisers,
+    flag="polarisers",
+    cost=Cost(1.00, "ball"),
+))  # fmt: skip

@@ -13,6 +13,7 @@ from typing import Any
 
 import scenes
 from sim.features.flags import Features
+from sim.features.polarised import require_polarisation
 from sim.features.registry import Feature, Subject, Verdict, registered
 from sim.scene_media import collect_media
 from sim.settings import ResolvedSettings
@@ -98,7 +99,7 @@ def plan_features(scene: scenes.Scene, settings: ResolvedSettings) -> FeaturePla
     return judge_features(
         Subject(
             scene, made_of.media, made_of.air_powers, settings.direct_light, settings.precision,
-            settings.bounces,
+            settings.bounces, settings.polarisation,
         ),
         tolerance=settings.omission_tolerance,
         everything=settings.features == "all",
@@ -115,7 +116,11 @@ def judge_features(
         tolerance: that the bounds of what is left out may add up to; 0 leaves out only what
             cannot change anything.
         everything: leave nothing out, except at the user's word.
+
+    Raises:
+        SettingsError: polarised light cannot be followed as the setting says.
     """
+    require_polarisation(subject)
     verdicts = {feature.name: feature.judge(subject) for feature in registered()}
     allowed = _allowed(verdicts, tolerance)
     decisions = []
@@ -150,13 +155,22 @@ def _allowed(verdicts: dict[str, Verdict | None], tolerance: float) -> set[str]:
 
 
 def find_features(
-    scene: scenes.Scene, media: Sequence[Medium], air_powers: Sequence[int]
+    scene: scenes.Scene,
+    media: Sequence[Medium],
+    air_powers: Sequence[int],
+    *,
+    polarisation: str = "auto",
 ) -> Features:
-    """The flags of all that could change anything, with any settings.
+    """The flags of all that could change anything, with any settings but this one.
 
     Args:
         scene: the scene.
         media: its resolved media, the ambient one first.
         air_powers: of each medium, the power of the index of air that it is multiplied by.
+        polarisation: the setting of this name.
+
+    Raises:
+        SettingsError: polarised light cannot be followed as the setting says.
     """
-    return judge_features(Subject(scene, tuple(media), tuple(air_powers))).features
+    subject = Subject(scene, tuple(media), tuple(air_powers), polarisation=polarisation)
+    return judge_features(subject).features

@@ -43,6 +43,7 @@ class Subject:
         direct_light: the setting of this name; None: not known.
         precision: the setting of this name; None: not known.
         bounces: the setting of this name; None: not known.
+        polarisation: the setting of this name.
     """
 
     scene: scenes.Scene
@@ -51,6 +52,7 @@ class Subject:
     direct_light: str | None = None
     precision: str | None = None
     bounces: int | None = None
+    polarisation: str = "auto"
 
     @cached_property
     def has_boundaries(self) -> bool:
@@ -80,6 +82,15 @@ class Subject:
             item.material
             for item in self.scene.objects
             if isinstance(item.material, scenes.Mirror | scenes.Metal)
+        )
+
+    @cached_property
+    def polarisers(self) -> tuple[scenes.Polariser, ...]:
+        """The polarisers, one an object that is one."""
+        return tuple(
+            item.material
+            for item in self.scene.objects
+            if isinstance(item.material, scenes.Polariser)
         )
 
 

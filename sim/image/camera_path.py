@@ -28,6 +28,7 @@ from sim.image.camera import make_camera_functions, make_camera_struct
 from sim.image.gather import make_gather
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
 from sim.image.visible_lamps import make_see_lamps
+from sim.polarised_light import make_light
 from sim.sampling.counter import hash64
 from sim.sampling.kronecker import r1_point, r2_point
 from sim.sampling.roulette import choose_branches
@@ -83,7 +84,12 @@ def make_render_camera(precision: str, features: Features) -> Any:
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
     seeing = make_camera_functions(precision, features)
     look_through, place_in_pixel = seeing.look_through, seeing.place_in_pixel
-    losses = features.absorption or features.finishes
+    losses = features.absorption or features.finishes or features.polarisers
+    mode = features.light_of("camera")
+    polarised = mode != "averaged"
+    carried = make_light(precision, mode, polarisers=features.polarisers, towards_eye=True)
+    light_type, frame_type, natural = carried.Light, carried.Frame, carried.natural
+    turn, judge, send = carried.turn, carried.judge, carried.send
     gather = make_gather(precision, features)
     see_lamps = make_see_lamps(precision, features)
 
@@ -100,6 +106,11 @@ def make_render_camera(precision: str, features: Features) -> Any:
         stack_ray = wp.zeros(shape=(8,), dtype=ray_type)
         stack_throughput = wp.zeros(shape=(8,), dtype=real)
         stack_dispersed = wp.zeros(shape=(8,), dtype=int)
+        # What the eye is sensitive to, of the light that comes against the path: all alike.
+        light, frame = natural(camera_ray.direction)
+        if wp.static(polarised):
+            stack_light = wp.zeros(shape=(8,), dtype=light_type)
+            stack_frame = wp.zeros(shape=(8,), dtype=frame_type)
         depth = int(0)
         alive = bool(True)
         ray = camera_ray
@@ -121,6 +132,9 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 ray.face = pending.face
                 ray.prim2 = pending.prim2
                 ray.face2 = pending.face2
+                if wp.static(polarised):
+                    light = stack_light[depth]
+                    frame = stack_frame[depth]
                 throughput = stack_throughput[depth]
                 dispersed = stack_dispersed[depth]
                 alive = bool(True)
@@ -131,7 +145,13 @@ def make_render_camera(precision: str, features: Features) -> Any:
                     parted = parted | scene.media[met.medium].tints
                 if (sight.band == ALL_BANDS) != (parted == 1):
                     scale = throughput / lights.receivers.band_width_nm
-                    see_lamps(lights, ray, met, sight, scale, sample)
+                    see_lamps(lights, ray, met, sight, scale, light, frame, sample)
+            if wp.static(polarised):
+                if met.event == EVENT_BOUNDARY:
+                    light, frame = turn(scene, met, ray.direction, light, frame)
+                    reflectance, lost = judge(met, light)
+                    met.reflectance = reflectance
+                    met.absorbed = lost
             if wp.static(losses):
                 throughput -= throughput * met.absorbed
             if met.dispersive == 1:
@@ -163,6 +183,12 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 )
                 if swapped:
                     ray.direction = weaker
+                    refracts = 1 - refracts
+                if wp.static(polarised):
+                    if side > real(0.0):
+                        stack_light[depth] = send(met, light, 1 - refracts)
+                        stack_frame[depth] = frame
+                    light = send(met, light, refracts)
                 if side > real(0.0):
                     side_ray = ray_type()
                     side_ray.origin = met.point

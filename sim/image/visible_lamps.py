@@ -18,7 +18,9 @@ from sim.features import Features
 from sim.image.sight import ALL_BANDS, make_lights_struct, make_sight_struct
 from sim.optics.absorption import absorbed_fraction
 from sim.photons.cells import make_cell_functions
+from sim.photons.emitted_light import make_seen_light
 from sim.photons.lamp_structs import DISTANT, RECTANGLE_LAMP, SPHERE_LAMP, make_lamp_structs
+from sim.polarised_light import make_light
 from sim.scene_structs import make_ray_structs, make_scene_structs
 
 __all__ = ["make_see_lamps"]
@@ -95,10 +97,11 @@ def make_distance_to_lamp(precision: str, *, distant: bool) -> object:
 
 @functools.cache
 def make_see_lamps(precision: str, features: Features) -> object:
-    """Device function `see_lamps(lights, ray, met, sight, scale, sums)`.
+    """Device function `see_lamps(lights, ray, met, sight, scale, eye, frame, sums)`.
 
     It adds `scale` times the radiance, times the bands' width, of all lamps on the ray's way to
-    what it has `met` to the bands of the sight's row of `sums`: to all, or to its own.
+    what it has `met` to the bands of the sight's row of `sums`: to all, or to its own. `eye` and
+    `frame` are what the path carries, see `sim.polarised_light`.
     """
     structs = make_scene_structs(precision)
     real, ray_type, interaction_type = structs.real, structs.Ray, structs.Interaction
@@ -107,6 +110,10 @@ def make_see_lamps(precision: str, features: Features) -> object:
     lamps_type, emitter_type = lamp_structs.Lamps, lamp_structs.Emitter
     mask_density = make_cell_functions(precision).mask_density
     distance_to_lamp = make_distance_to_lamp(precision, distant=features.distant_lamps)
+    mode = features.light_of("camera")
+    carried = make_light(precision, mode, polarisers=features.polarisers, towards_eye=True)
+    light_type, frame_type = carried.Light, carried.Frame
+    seen_light = make_seen_light(precision, features)
 
     @wp.func
     def mask_factor(lamps: lamps_type, emitter: emitter_type, ray: ray_type, distance: real):
@@ -120,7 +127,7 @@ def make_see_lamps(precision: str, features: Features) -> object:
     @wp.func
     def see_lamps(
         lights: lights_type, ray: ray_type, met: interaction_type, sight: sight_type, scale: real,
-        sums: wp.array2d(dtype=wp.float64),
+        eye: light_type, frame: frame_type, sums: wp.array2d(dtype=wp.float64),
     ):
         receivers = lights.receivers
         lamp = int(0)
@@ -132,6 +139,8 @@ def make_see_lamps(precision: str, features: Features) -> object:
                 if wp.static(features.masks):
                     if emitter.first_mask >= 0:
                         radiance *= mask_factor(lights.lamps, emitter, ray, distance)
+                if wp.static(mode == "stokes"):
+                    radiance *= seen_light(lights.lamps, lamp, ray.direction, eye, frame)
                 if wp.static(features.absorption):
                     radiance -= radiance * absorbed_fraction(met.alpha, distance)
                 band = int(sight.band)

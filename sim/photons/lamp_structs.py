@@ -42,7 +42,7 @@ AIM_CELLS = wp.constant(32)
 
 @functools.cache
 def make_lamp_structs(precision: str) -> SimpleNamespace:
-    """Structs Emitter, Target, Segment (of a spectrum) and Lamps, with the scalar types."""
+    """Structs Emitter, Target, Segment (of a spectrum), Vibration and Lamps, and types."""
     types = precision_types(precision)
     real, vec3, mat33 = types.real, types.vec3, types.mat33
 
@@ -102,10 +102,18 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         density_high: real
 
     @wp.struct
+    class Vibration:
+        """(q, u, v) of an emitter's light, angles counted from `up` as seen across the ray."""
+
+        light: vec3
+        up: vec3
+
+    @wp.struct
     class Lamps:
         emitters: wp.array(dtype=Emitter)
         targets: wp.array(dtype=Target)
         segments: wp.array(dtype=Segment)
+        vibrations: wp.array(dtype=Vibration)  # one an emitter
         cdf: wp.array(dtype=real)
         guide: wp.array(dtype=int)
         sobol: wp.array(dtype=wp.uint32)
@@ -117,5 +125,6 @@ def make_lamp_structs(precision: str) -> SimpleNamespace:
         Emitter=Emitter,
         Target=Target,
         Segment=Segment,
+        Vibration=Vibration,
         Lamps=Lamps,
     )

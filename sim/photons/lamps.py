@@ -9,6 +9,7 @@ import warp as wp
 
 import scenes
 from sim.photons.aiming import Aim, Guide, View, aim_at_sensors, plan_photons
+from sim.photons.emitted_light import compile_vibrations
 from sim.photons.emitter_rows import emitter_row, full_flux, mask_functions
 from sim.photons.lamp_structs import AIM_CELLS, make_lamp_structs
 from sim.precision import precision_types
@@ -90,9 +91,13 @@ def compile_lamps(
         tables.add(
             emitter_row(compiled, emitter, flux), spectrum, aims, count, mask_functions(emitter)
         )
+    data = tables.on_device(compiled)
+    data.vibrations = compile_vibrations(
+        [emitter for emitter, _, _ in shining], compiled.precision, compiled.device
+    )
     flux = sum(flux for _, _, flux in shining)
     spectra = tuple(spectrum for _, spectrum, _ in shining)
-    return Lamps(tables.on_device(compiled), tuple(tables.streams), flux, spectra, guide.aims)
+    return Lamps(data, tuple(tables.streams), flux, spectra, guide.aims)
 
 
 class _Tables:

@@ -16,6 +16,7 @@ import warp as wp
 from sim.features import Features
 from sim.optics.dispersion import tabulated_index
 from sim.photons.emission import make_emission, make_wavelength_function
+from sim.photons.emitted_light import make_emitted_light
 from sim.photons.energy import BOOK_COLUMNS
 from sim.photons.lamp_structs import DISTANT, make_lamp_structs
 from sim.photons.photon_structs import (
@@ -27,6 +28,7 @@ from sim.photons.photon_structs import (
     mark_dispersed,
     surface_key,
 )
+from sim.polarised_light import make_light
 from sim.sampling.counter import hash64, to_unit
 from sim.sampling.directions import sample_cosine_hemisphere, to_world
 from sim.sampling.roulette import choose_branches, play_roulette
@@ -70,7 +72,12 @@ def make_follow(precision: str, features: Features) -> object:
     intersect, facet_toward = transport.intersect, transport.facet_toward
     record_crossings = make_record_crossings(precision)
     both_branches = features.method.branching == "weights"
-    losses = features.absorption or features.finishes
+    losses = features.absorption or features.finishes or features.polarisers
+    mode = features.light_of("photons")
+    polarised = mode != "averaged"
+    carried = make_light(precision, mode, polarisers=features.polarisers)
+    light_type, frame_type, turn = carried.Light, carried.Frame, carried.turn
+    natural, judge, send = carried.natural, carried.judge, carried.send
 
     @wp.func
     def store(
@@ -104,8 +111,8 @@ def make_follow(precision: str, features: Features) -> object:
     @wp.func
     def follow(
         scene: scene_type, job: job_type, start_ray: ray_type, first: hit_type,
-        wavelength_nm: real, start_flux: real, draws: wp.uint64, out_photons: photons_type,
-        out_counts: wp.array2d(dtype=int),
+        wavelength_nm: real, start_flux: real, start_light: light_type, start_frame: frame_type,
+        draws: wp.uint64, out_photons: photons_type, out_counts: wp.array2d(dtype=int),
     ):
         """Follow a photon of one wavelength, about to meet `first`, and all its branches.
 
@@ -124,6 +131,11 @@ def make_follow(precision: str, features: Features) -> object:
         stack_ray = wp.zeros(shape=(8,), dtype=ray_type)
         stack_flux = wp.zeros(shape=(8,), dtype=real)
         stack_history = wp.zeros(shape=(8,), dtype=int)
+        if wp.static(polarised):
+            light = start_light
+            frame = start_frame
+            stack_light = wp.zeros(shape=(8,), dtype=light_type)
+            stack_frame = wp.zeros(shape=(8,), dtype=frame_type)
         depth = int(0)
         alive = bool(True)
         hit = first
@@ -139,6 +151,12 @@ def make_follow(precision: str, features: Features) -> object:
                     draws + wp.uint64(step), out_photons, out_counts,
                 )
             history = mark_dispersed(history, met.dispersive)
+            if wp.static(polarised):
+                if met.event == EVENT_BOUNDARY:
+                    light, frame = turn(scene, met, ray.direction, light, frame)
+                    reflectance, lost_here = judge(met, light)
+                    met.reflectance = reflectance
+                    met.absorbed = lost_here
             if wp.static(losses):
                 lost = flux * met.absorbed
                 absorbed += lost
@@ -167,6 +185,12 @@ def make_follow(precision: str, features: Features) -> object:
                 if swapped:
                     ray.direction = weaker
                     history = side_history
+                    refracts = 1 - refracts
+                if wp.static(polarised):
+                    if side_flux > real(0.0):
+                        stack_light[depth] = send(met, light, 1 - refracts)
+                        stack_frame[depth] = frame
+                    light = send(met, light, refracts)
                 if side_flux > real(0.0):
                     side_ray = ray_type()
                     side_ray.origin = met.point
@@ -223,6 +247,8 @@ def make_follow(precision: str, features: Features) -> object:
                             ray.face = met.face
                             ray.prim2 = met.prim2
                             ray.face2 = met.face2
+                            if wp.static(polarised):
+                                light, frame = natural(ray.direction)
                     deposited += flux - goes_on
                     if wp.static(features.interreflection):
                         flux = play_roulette(
@@ -247,6 +273,9 @@ def make_follow(precision: str, features: Features) -> object:
                 ray.face = pending.face
                 ray.prim2 = pending.prim2
                 ray.face2 = pending.face2
+                if wp.static(polarised):
+                    light = stack_light[depth]
+                    frame = stack_frame[depth]
                 flux = stack_flux[depth]
                 history = stack_history[depth]
                 alive = True
@@ -276,6 +305,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     emit = make_emission(precision, features)
     sample_wavelength = make_wavelength_function(precision)
     follow = make_follow(precision, features)
+    emitted_light = make_emitted_light(precision, features)
 
     @wp.func
     def is_shaded(scene: scene_type, emitter: emitter_type, ray: ray_type):
@@ -314,6 +344,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                     if scene.bodies[first.prim].dispersive == 1:
                         colours = int(COLOURS)
             flux = emitted / real(colours)
+            light, frame = emitted_light(lamps, job.emitter, ray.direction)
             colour = int(0)
             while colour < colours:
                 u = u_wavelength + real(colour) / real(colours)
@@ -322,7 +353,8 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                 )
                 draws = (wp.uint64(index) << wp.uint64(24)) + (wp.uint64(colour) << wp.uint64(17))
                 flows += follow(
-                    scene, job, ray, first, wavelength_nm, flux, draws, out_photons, out_counts
+                    scene, job, ray, first, wavelength_nm, flux, light, frame, draws, out_photons,
+                    out_counts,
                 )
                 colour += 1
         return emitted, flows

@@ -133,11 +133,13 @@ def trace_caustic_mesh(
         resolution: of the finest mesh.
 
     Raises:
-        SettingsError: there is no such emitter or object, a branch has another name, or the edges
-            are outside of the film's range.
+        SettingsError: there is no such emitter or object, its light is polarised, a branch has
+            another name, or the edges are outside of the film's range.
     """
     edges = _require_film(compiled.scene, edges_nm)
     lamp = _find_emitter(compiled.scene, emitter)
+    if lamp.polarisation is not None:
+        raise SettingsError("emitter", emitter, "a lamp of natural light, for a mesh")
     bounds = _bounds(compiled.scene, target)
     chain = make_chain(compiled, receiver, branches)
 

@@ -1,8 +1,9 @@
 """Rays that follow one chain of refractions and reflections, to where it meets the receiver.
 
 Each advances by the same `interact` step as photons and camera paths. Where photons split at a
-surface, a chain takes one branch and carries its share of the flux, 1 − R or R with the mean R of
-s and p light: the contributions of all chains add up to what photons deposit.
+surface, a chain takes one branch and carries its share of the flux, 1 − R or R, as the light is
+polarised there: the contributions of all chains add up to what photons deposit. Light starts
+natural.
 """
 
 import functools
@@ -19,6 +20,7 @@ from sim.errors import SettingsError
 from sim.features import Features
 from sim.geometry.flat import intersect_plane, plane_coordinates
 from sim.optics.absorption import absorbed_fraction
+from sim.polarised_light import make_light
 from sim.scene_data import CompiledScene
 from sim.study.receiver_bins import ReceiverBins
 from sim.transport import EVENT_BOUNDARY, EVENT_PASS, make_transport
@@ -84,7 +86,11 @@ def make_trace_chain(precision: str, features: Features) -> Any:
     real, vec3, interact = structs.real, structs.vec3, transport.interact
     scene_type, ray_type, met_type = transport.Scene, transport.Ray, transport.Interaction
     media_indices = transport.media_indices
-    losses = features.absorption or features.finishes
+    losses = features.absorption or features.finishes or features.polarisers
+    mode = features.light_of("photons")
+    polarised = mode != "averaged"
+    carried = make_light(precision, mode, polarisers=features.polarisers)
+    natural, turn, judge, send = carried.natural, carried.turn, carried.judge, carried.send
 
     @wp.func
     def land(chain: chain_type, ray: ray_type, met: met_type):
@@ -114,6 +120,8 @@ def make_trace_chain(precision: str, features: Features) -> Any:
         ray.prim2 = -1
         indices = media_indices(scene, wavelengths_nm[i])
         share = real(1.0)
+        if wp.static(polarised):
+            light, frame = natural(ray.direction)
         signature = wp.uint64(14695981039346656037)
         step = int(0)
         while step <= chain.limit:
@@ -130,6 +138,12 @@ def make_trace_chain(precision: str, features: Features) -> Any:
                 break
             if not boundary and not passes:
                 break
+            if wp.static(polarised):
+                if boundary:
+                    light, frame = turn(scene, met, ray.direction, light, frame)
+                    reflectance, lost = judge(met, light)
+                    met.reflectance = reflectance
+                    met.absorbed = lost
             if wp.static(losses):
                 share -= share * met.absorbed
             reflects = int(0)
@@ -141,11 +155,15 @@ def make_trace_chain(precision: str, features: Features) -> Any:
             elif reflects == 1 or met.opaque == 1:
                 share *= met.reflectance
                 ray.direction = met.reflected
+                if wp.static(polarised):
+                    light = send(met, light, 0)
             elif met.total == 1:
                 break
             else:
                 share *= real(1.0) - met.reflectance
                 ray.direction = met.refracted
+                if wp.static(polarised):
+                    light = send(met, light, 1)
             ray.origin = met.point
             ray.prim = met.prim
             ray.face = met.face

@@ -90,6 +90,8 @@ def find_chain(
     edges = scene.film.edges_nm
     shining = [one for one in scene.emitters if one.emission().band_flux(edges).any()]
     for row, emitter in enumerate(shining):
+        if emitter.polarisation is not None:
+            continue  # the mesh's light starts natural
         lit = through & (photons["emitter"] == row) & has_charts(emitter)
         if np.count_nonzero(lit) < SHINING * len(batch):
             continue

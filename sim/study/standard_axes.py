@@ -122,6 +122,14 @@ def _fresnel(centre: Setup, quick: bool) -> Mapping[str, Setup]:
     return {name: centre.with_method(fresnel=name) for name in ("schlick", "none")}
 
 
+def _polarisation(centre: Setup, quick: bool) -> Mapping[str, Setup]:
+    slantwise = any(
+        isinstance(item.material, scenes.Polariser) for item in centre.scene.objects
+    ) or any(one.polarisation is not None for one in centre.scene.emitters)
+    names = ("averaged",) if slantwise else ("averaged", "s-p")
+    return {name: centre.with_settings(polarisation=name) for name in names}
+
+
 def _dispersion(centre: Setup, quick: bool) -> Mapping[str, Setup]:
     return {
         "two-term Cauchy": centre.with_scene(with_cauchy_media(centre.scene)),
@@ -182,6 +190,8 @@ for _axis in (
     Axis("all three", "method", RESULTS, "sampler, branching and aiming together",
          "sobol, weights, aimed", _plain),
     Axis("Fresnel", "method", RESULTS, "reflectance at boundaries", "exact", _fresnel),
+    Axis("polarisation", "settings", RESULTS, "what is known of how light vibrates", "auto",
+         _polarisation),
     Axis("dispersion", "scene", RESULTS, "the formula of the index", "the scene's", _dispersion),
     Axis("bounces", "settings", ("picture",), "bounces off diffuse surfaces", "the scene's",
          _bounces),

@@ -72,17 +72,19 @@ class Workshop:
         self.target: str | None = None
         self.mesh_nodes = (4, 4)
         self._device = start_device("cpu")
-        self._benches: dict[tuple[int, str, Method], _Bench] = {}
+        self._benches: dict[tuple[int, str, str, Method], _Bench] = {}
         self._films: dict[tuple[int, int], Film] = {}
 
     def bench(self, setup: Setup) -> _Bench:
         """The compiled scene of a setup."""
         precision = str(setup.settings.precision)
-        key = (id(setup.scene), precision, setup.method)
+        polarisation = setup.settings.polarisation
+        key = (id(setup.scene), precision, polarisation, setup.method)
         if key not in self._benches:
             scene = setup.scene
             compiled = compile_scene(
-                scene, precision=precision, device=self._device, method=setup.method
+                scene, precision=precision, device=self._device, method=setup.method,
+                polarisation=polarisation,
             )
             assert scene.camera is not None  # the study has asked for a scene with one
             camera = compile_camera(compiled, scene.camera, scene.film)
@@ -97,7 +99,8 @@ class Workshop:
         for setup in setups:
             precision = str(setup.settings.precision)
             features = compile_scene(
-                setup.scene, precision=precision, device=self._device, method=setup.method
+                setup.scene, precision=precision, device=self._device, method=setup.method,
+                polarisation=setup.settings.polarisation,
             ).features
             needed = kernels_of(precision, features)
             if setup.estimator == "gather":

@@ -150,6 +150,25 @@ def shape_of(scene: Scene, name: str) -> object:
     return next(one.shape for one in scene.objects if one.name == name)
 
 
+def test_the_pane_is_seen_at_brewsters_angle() -> None:
+    scene = scenes.load("brewster")
+    camera = scene.camera
+    assert camera is not None
+    sight = unit(np.array([0.0, 0.030, 0.0]) - camera.position)  # to the middle of the pane's top
+    # tan θ_B = n (Born & Wolf 1999, §1.5.3); positions are written to 1 µm, 1.2 m away.
+    assert math.tan(math.acos(-sight[1])) == pytest.approx(1.5, abs=1e-5)
+    for name, passes in (("left filter", np.cross(sight, [1.0, 0.0, 0.0])), ("right filter", None)):
+        sheet = next(one for one in scene.objects if one.name == name)
+        assert isinstance(sheet.shape, Rectangle)
+        assert isinstance(sheet.material, scenes.Polariser)
+        np.testing.assert_allclose(sheet.shape.normal, -sight, atol=2e-6)
+        along = np.array(sheet.material.axis)
+        expected = np.array([1.0, 0.0, 0.0]) if passes is None else passes
+        assert abs(float(along @ expected)) == pytest.approx(1.0, abs=1e-9)
+        distance = (np.array(sheet.shape.position) - camera.position) @ sight
+        assert distance == pytest.approx(0.45, abs=2e-6)
+
+
 def test_the_pools_crests_reach_the_floor_where_they_meet() -> None:
     water = shape_of(scenes.load("pool"), "water")
     assert isinstance(water, scenes.HeightField)

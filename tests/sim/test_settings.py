@@ -23,6 +23,7 @@ from sim.settings import DEFAULTS, OPEN_PASSES, PRESETS, RenderSettings
         *[("target_error", value) for value in (0.0, -0.01, 1.5, math.nan, "1%")],
         *[("time_budget", value) for value in (0.0, -1.0, math.inf, math.nan, "60s")],
         *[("direct_light", value) for value in ("rays", None)],
+        *[("polarisation", value) for value in ("Stokes", None)],
         *[("max_interactions", value) for value in (0, 2**20)],
         *[("seed", value) for value in (-1, 2**63, None)],
         *[("threads", value) for value in (0, 4096)],

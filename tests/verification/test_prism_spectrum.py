@@ -42,7 +42,7 @@ def spectrum(bench, trace_passes):
 
 
 def cross(direction, normal, eta_i, eta_t):
-    """Refracted direction and transmittance of unpolarised light, all in arrays.
+    """Refracted direction and transmittance of s and p light, (2, ...), all in arrays.
 
     With c = −n·d Snell's law reads, of unit vectors,
     t = η d + (η c − √(1 − η²(1 − c²))) n, η = η_i/η_t (Born & Wolf 1999, §1.5.1).
@@ -50,7 +50,7 @@ def cross(direction, normal, eta_i, eta_t):
     eta = (eta_i / eta_t)[..., None]
     c = -(direction @ normal)[..., None]
     root = np.sqrt(1.0 - eta**2 * (1.0 - c**2))
-    transmittance = 1.0 - np.mean(fresnel_reflectance(c[..., 0], eta_i, eta_t), axis=0)
+    transmittance = 1.0 - np.stack(fresnel_reflectance(c[..., 0], eta_i, eta_t))
     return eta * direction + (eta * c - root) * normal, transmittance
 
 
@@ -59,7 +59,8 @@ def expected_centroids(bench):
 
     A bundle of parallel rays of one colour stays parallel, and its middle follows the middle ray;
     so the slit counts by its centre, and there remain the integrals over the band, with the
-    lamp's spectrum, and over the cone of directions.
+    lamp's spectrum, and over the cone of directions. Both planes of incidence are one, but for the
+    cone's half angle, 0.1°, whose square they mix s and p by.
     """
     shapes = {one.name: one.shape for one in bench.objects}
     prism, screen, slit = shapes["prism"], shapes["screen"], bench.emitters[0]
@@ -83,7 +84,7 @@ def expected_centroids(bench):
         # leaves by the other at the apex.
         into = 1 + int(np.argmin(normals[1:3] @ axis))
         out = 3 - into
-        flux = light.copy()
+        halves = 0.5 * np.stack([light, light])  # s and p
         for face, eta_i, eta_t in ((into, 1.0, eta), (out, eta, 1.0)):
             normal = normals[face]
             against = normal if face == into else -normal
@@ -92,7 +93,8 @@ def expected_centroids(bench):
             direction, transmittance = cross(
                 direction, against, *np.broadcast_arrays(eta_i, eta_t)
             )
-            flux = flux * transmittance
+            halves = halves * transmittance
+        flux = halves.sum(axis=0)
         t = (screen.position - point) @ screen.normal / (direction @ screen.normal)
         place = (point + t[..., None] * direction - screen.position) @ screen.frame()[0]
         total += flux.sum(axis=1)

@@ -128,7 +128,8 @@ def test_dispersion_is_left_out_where_its_bound_is_tolerated():
     assert judged(1e-10, 1e-2).bound == pytest.approx(bound, rel=2e-3)
     assert not judged(1e-10, 1e-2).features.dispersion
     assert judged(1e-10, 1e-6).features.dispersion  # refused at the default tolerance
-    assert judged(1e-10, 1e-6).bound == 0.0
+    # … and what remains is the rounding of Stokes vectors, which a ball does not need.
+    assert judged(1e-10, 1e-6).bound <= 1e-11
     assert judged(1e-2, 0.5).features.dispersion
     assert find_features(
         subject_of().scene, [AMBIENT, Medium("c", Cauchy((1.5,)), (1.0, 1e9), "", "air")], [0, 0]
