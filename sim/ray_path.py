@@ -32,6 +32,8 @@ class RayPath:
         polarisations: (n, 3), (q, u, v) on each segment, the Stokes vector over the flux.
         frames: (n, 3), unit, what q and u are told by: s, across the ray, with p = direction × s.
             See `sim.analytic_polarisation`.
+        normals: (n, 3), unit, of the surface at each vertex, toward the ray that comes; 0 where
+            nothing was met.
         wavelength_nm: of the ray.
     """
 
@@ -43,6 +45,7 @@ class RayPath:
     absorptances: FloatArray
     polarisations: FloatArray
     frames: FloatArray
+    normals: FloatArray
     wavelength_nm: float
 
     @property

@@ -110,6 +110,7 @@ def trace_compiled_rays(
     absorbed = wp.zeros(size, dtype=structs.real, device=device)
     lights = wp.zeros(size, dtype=structs.vec3, device=device)
     frames = wp.zeros(size, dtype=structs.vec3, device=device)
+    normals = wp.zeros(size, dtype=structs.vec3, device=device)
     counts = wp.zeros(rays, dtype=int, device=device)
     wp.launch(
         make_trace_single(
@@ -126,14 +127,14 @@ def trace_compiled_rays(
             wp.array(ups, dtype=structs.vec3, device=device),
         ],
         outputs=[
-            points, ways, events, prims, reflectances, absorbed, lights, frames, counts,
+            points, ways, events, prims, reflectances, absorbed, lights, frames, normals, counts,
         ],
         device=device,
     )
     record = _Record(
         compiled, local, points.numpy(), ways.numpy(), events.numpy(), prims.numpy(),
-        reflectances.numpy(), absorbed.numpy(), lights.numpy(), frames.numpy(), counts.numpy(),
-        wavelengths_nm,
+        reflectances.numpy(), absorbed.numpy(), lights.numpy(), frames.numpy(), normals.numpy(),
+        counts.numpy(), wavelengths_nm,
     )
     return [record.path(i) for i in range(rays)]
 
@@ -152,6 +153,7 @@ class _Record:
     absorbed: npt.NDArray[Any]
     lights: npt.NDArray[Any]
     frames: npt.NDArray[Any]
+    normals: npt.NDArray[Any]
     counts: npt.NDArray[Any]
     wavelengths_nm: FloatArray
 
@@ -175,6 +177,7 @@ class _Record:
             absorptances=self.absorbed[i, :n].astype(np.float64),
             polarisations=self.lights[i, :n].astype(np.float64),
             frames=self.frames[i, :n].astype(np.float64),
+            normals=self.normals[i, :n].astype(np.float64),
             wavelength_nm=float(self.wavelengths_nm[i]),
         )
 

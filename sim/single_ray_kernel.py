@@ -64,6 +64,7 @@ def make_trace_single(precision: str, features: Features) -> Any:
         out_absorbed: wp.array2d(dtype=real),
         out_light: wp.array2d(dtype=vec3),
         out_frames: wp.array2d(dtype=vec3),
+        out_normals: wp.array2d(dtype=vec3),
         out_counts: wp.array(dtype=int),
     ):
         i = wp.tid()
@@ -89,6 +90,7 @@ def make_trace_single(precision: str, features: Features) -> Any:
             out_directions[i, step] = ray.direction
             out_points[i, step] = met.point
             out_prims[i, step] = met.prim
+            out_normals[i, step] = met.normal
             out_absorbed[i, step] = met.absorbed
             count += 1
             ray.origin = met.point

@@ -1,6 +1,7 @@
 """Draw the ray diagram of a scene: single rays from its lamps, coloured by wavelength.
 
-Rays follow refraction; where refraction cannot be, they follow total internal reflection.
+Rays follow refraction; where refraction cannot be, they follow total internal reflection. What is
+reflected on the way is drawn if asked for.
 """
 
 from __future__ import annotations
@@ -23,7 +24,6 @@ __all__ = ["SUMMARY", "add_arguments", "run"]
 SUMMARY = "draw the ray diagram of a scene"
 
 _DEFAULT_WAVELENGTHS = 5
-_ESCAPE = "escape"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,6 +35,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="rays of each wavelength (default: 24)")
     parser.add_argument("--wavelengths", type=_wavelengths, metavar="NM,NM,…",
                         help="wavelengths [nm] (default: five over the film's range)")
+    parser.add_argument("--reflections", type=int, choices=range(4), default=0,
+                        help="also draw, dashed and the fainter the less they carry, paths that "
+                             "are reflected where they could be refracted, at up to so many "
+                             "surfaces (default: 0; total reflection is always drawn)")
+    parser.add_argument("--normals", action="store_true",
+                        help="draw the surfaces' normals where rays meet them")
     parser.add_argument("--view", choices=("xy", "xz", "yz"),
                         help="the plane seen (default: the one the rays spread in most)")
     parser.add_argument("--seed", type=count, default=0, metavar="N",
@@ -66,7 +72,10 @@ def run(arguments: argparse.Namespace) -> None:
     output = arguments.output or Path(f"{scene.source_name}-rays.png")
     check_writable(output)
     wavelengths_nm = arguments.wavelengths or _default_wavelengths_nm(scene)
-    work = functools.partial(_traced, scene, arguments.rays, wavelengths_nm, arguments.seed)
+    work = functools.partial(
+        _traced, scene, arguments.rays, wavelengths_nm, arguments.seed,
+        reflections=arguments.reflections, normals=arguments.normals,
+    )
     paths = run_interruptibly(work)
     save_figure(draw_rays(scene, paths, view=arguments.view), output)
     print(f"{output}: {len(paths)} rays")
@@ -86,25 +95,29 @@ def _default_wavelengths_nm(scene: Scene) -> list[float]:
 
 
 def _traced(
-    scene: Scene, rays: int, wavelengths_nm: Sequence[float], seed: int
+    scene: Scene,
+    rays: int,
+    wavelengths_nm: Sequence[float],
+    seed: int,
+    *,
+    reflections: int,
+    normals: bool,
 ) -> list[DrawnPath]:
     import numpy as np
 
     from sim.device import start_device
-    from sim.diagram.ray_lines import DrawnPath
+    from sim.diagram.branches import trace_branches
     from sim.photons.representative import representative_rays
     from sim.scene_data import compile_scene
-    from sim.single_ray import trace_compiled_rays
 
     origins, directions = representative_rays(scene, rays, seed)
     every_nm = np.repeat(np.asarray(wavelengths_nm, dtype=np.float64), rays)
     bundles = len(wavelengths_nm)
-    paths = trace_compiled_rays(
+    return trace_branches(
         compile_scene(scene, device=start_device("cpu")),
         np.tile(origins, (bundles, 1)),
         np.tile(directions, (bundles, 1)),
         every_nm,
+        reflections=reflections,
+        normals=normals,
     )
-    return [
-        DrawnPath(path.points, path.wavelength_nm, path.events[-1] == _ESCAPE) for path in paths
-    ]

@@ -12,7 +12,7 @@ from scenes.emitters import LocalEmitter
 from scenes.materials import Dielectric
 from scenes.shapes import Plane
 from sim.diagram.outlines import emitter_outline, shape_outline
-from sim.diagram.ray_lines import DrawnPath, ray_lines
+from sim.diagram.ray_lines import KINDS, DrawnPath, ray_lines
 from sim.diagram.view import NAMED_VIEWS, View, choose_view
 
 if TYPE_CHECKING:
@@ -32,6 +32,8 @@ _LONGEST_SIDE_IN = 10.0
 _DPI = 150
 _RAY_WIDTH_PT = 0.9
 _POINTS_PER_INCH = 72.0
+_STYLES = {"refracted": "solid", "reflected": "dashed", "totally reflected": "dashdot"}
+_NORMAL = 0.03  # Length of a surface normal to either side, as a share of the longer side.
 _MARGIN = 0.06  # Around everything, as a share of the longer side.
 _FARTHEST = 20.0  # What is further out than this many radii of the bench does not count.
 _METRES_FROM = 2.0  # A diagram larger than this [m] has its axes in metres.
@@ -70,6 +72,7 @@ def draw_rays(scene: Scene, paths: Sequence[DrawnPath], *, view: str | None = No
     _draw_planes(axes, scene, chosen, reach)
     resolution = _RAY_WIDTH_PT / _POINTS_PER_INCH / scale
     _draw_paths(axes, paths, chosen, reach=reach, resolution=resolution)
+    _draw_normals(axes, paths, chosen, _NORMAL * float(max(width, height)))
     _draw_lamps(axes, scene, chosen)
     _label(axes, scene.title, chosen, float(max(width, height)))
     return figure
@@ -143,8 +146,33 @@ def _draw_paths(
 ) -> None:
     from matplotlib.collections import LineCollection
 
-    lines, colours = ray_lines(paths, view, reach=reach, resolution=resolution)
-    axes.add_collection(LineCollection(list(lines), colors=colours, linewidths=_RAY_WIDTH_PT))
+    for kind in KINDS:
+        lines, colours = ray_lines(paths, view, reach=reach, resolution=resolution, kind=kind)
+        if len(lines):
+            axes.add_collection(
+                LineCollection(
+                    list(lines), colors=colours, linewidths=_RAY_WIDTH_PT, linestyles=_STYLES[kind]
+                )
+            )
+
+
+def _draw_normals(axes: Axes, paths: Sequence[DrawnPath], view: View, length: float) -> None:
+    """A thin line through each vertex, along the surface's normal; where many are, one."""
+    from matplotlib.collections import LineCollection
+
+    found: dict[tuple[int, ...], list[NDArray[np.float64]]] = {}
+    for path in paths:
+        if path.normals is not None:
+            places, normals = (view.project(part) for part in path.normals)
+            for place, normal in zip(places, normals, strict=True):
+                cell = tuple(np.round(place / (0.2 * length)).astype(int))
+                found.setdefault(cell, [place - length * normal, place + length * normal])
+    if found:
+        axes.add_collection(
+            LineCollection(
+                list(found.values()), colors=_FOREGROUND, linewidths=0.6, linestyles="dotted"
+            )
+        )
 
 
 def _draw_lamps(axes: Axes, scene: Scene, view: View) -> None:
