@@ -219,6 +219,7 @@ def test_deviation_is_measured_without_loss():
         points=np.zeros((3, 3)), directions=np.array([[1.0, 0.0, 0.0], [1.0, 1e-9, 0.0]]),
         events=("refract", "escape"), objects=("ball", ""), reflectances=np.zeros(2),
         absorptances=np.zeros(2), polarisations=np.zeros((2, 3)), frames=np.zeros((2, 3)),
+        normals=np.zeros((2, 3)),
         wavelength_nm=550.0,
     )  # fmt: skip
     assert path.deviation == pytest.approx(1e-9, rel=1e-15)
