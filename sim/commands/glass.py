@@ -6,7 +6,6 @@ import argparse
 from typing import TYPE_CHECKING
 
 from sim.commands.arguments import figure_file, length
-from spectra.units import FRAUNHOFER_LINES_NM
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -51,6 +50,7 @@ def _tell_medium(medium: Medium, thickness_m: float, output: Path | None) -> Non
     from sim.charts.glass import plot_glass
     from sim.figure_file import save_figure
     from spectra import absorbing_media, published_absorption
+    from spectra.units import FRAUNHOFER_LINES_NM
 
     lowest_nm, highest_nm = medium.wavelength_range_nm
     print(medium.name)
@@ -73,6 +73,7 @@ def _tell_medium(medium: Medium, thickness_m: float, output: Path | None) -> Non
 
 def _tell_absorption(absorption: Absorption, thickness_m: float) -> None:
     from sim.charts.glass import colour_through
+    from spectra.units import FRAUNHOFER_LINES_NM
 
     lowest_nm, highest_nm = absorption.wavelength_range_nm
     print(f"  through {thickness_m * 1000.0:g} mm, without reflections at the faces")
@@ -89,6 +90,7 @@ def _tell_metal(metal: Conductor, output: Path | None) -> None:
 
     from sim.charts.metal import normal_reflectance, plot_metal, reflected_colour
     from sim.figure_file import save_figure
+    from spectra.units import FRAUNHOFER_LINES_NM
 
     lowest_nm, highest_nm = metal.wavelength_range_nm
     print(metal.name)

@@ -50,15 +50,16 @@ def napierian(coefficient):
 def test_a_slab_reflects_transmits_and_absorbs_what_is_right(
     trace_passes, assert_mean, theta_deg, depth
 ):
-    # Each face reflects r, the mean of s and p, and each crossing leaves a = exp(−α d/cos θt).
-    # All internal reflections sum to T = (1 − r)² a/(1 − r² a²) and R = r (1 + a T) (Duffie &
-    # Beckman 2013, §5.3).
+    # Each face reflects r of s light and another r of p, and each crossing leaves a =
+    # exp(−α d/cos θt). All internal reflections sum to T = (1 − r)² a/(1 − r² a²) and R =
+    # r (1 + a T) of each, and natural light is half of both (Duffie & Beckman 2013, §5.3).
     theta = math.radians(theta_deg)
-    r = float(np.mean(analytic.fresnel_reflectance(math.cos(theta), 1.0, ETA)))
+    r = np.array(analytic.fresnel_reflectance(math.cos(theta), 1.0, ETA), dtype=float).ravel()
     cos_theta_t = math.sqrt(1.0 - (math.sin(theta) / ETA) ** 2)
     a = math.exp(-depth / cos_theta_t)
-    transmitted = (1.0 - r) ** 2 * a / (1.0 - (r * a) ** 2)
-    reflected = r * (1.0 + a * transmitted)
+    of_each = (1.0 - r) ** 2 * a / (1.0 - (r * a) ** 2)
+    transmitted = float(np.mean(of_each))
+    reflected = float(np.mean(r * (1.0 + a * of_each)))
     if theta == 0.0:
         split = analytic.slab_split(0.0, ETA, optical_depth=depth)
         assert transmitted == pytest.approx(float(split.transmitted), rel=1e-14)

@@ -259,3 +259,15 @@ def test_shares_of_s_and_p_cannot_follow_a_polariser():
     scene = scene_of(sheet(0.0, (0.0, 1.0, 0.0)))
     with pytest.raises(SettingsError, match="polarises in a plane of its own"):
         plan_features(scene, RenderSettings(polarisation="s-p").resolved(scene))
+
+
+def test_a_polariser_in_a_medium_that_absorbs():
+    # exp(−α d) on the way, and a half of the rest in the sheet.
+    smoke = scenes.ConstantMedium(
+        eta=1.2, absorption=scenes.NapierianAbsorption(coefficient=0.7)
+    )
+    item = scenes.SceneObject(
+        shape=sheet(0.0, (0.0, 1.0, 0.0))[0], material=scenes.Polariser(axis=(0.0, 1.0, 0.0))
+    )
+    path = along_x(scenes.Scene(objects=[item], ambient=smoke))
+    assert path.absorptances[0] == pytest.approx(1.0 - 0.5 * math.exp(-0.7), rel=8.0 * EPS)
