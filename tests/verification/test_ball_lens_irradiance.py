@@ -49,9 +49,10 @@ def trace(heights, order, z):
     phi = np.pi - theta - (order + 1) * (np.pi - 2.0 * inside)
     psi = -2.0 * (theta - inside) - order * (np.pi - 2.0 * inside)
     y = RADIUS * np.sin(phi) + (z - RADIUS * np.cos(phi)) * np.tan(psi)
-    r = np.mean(analytic.fresnel_reflectance(np.cos(theta), 1.0, ETA), axis=0)
+    # A ball's normals lie in one plane of incidence with the ray: s stays s, and p stays p.
+    r = np.array(analytic.fresnel_reflectance(np.cos(theta), 1.0, ETA))
     forward = (np.cos(psi) > 0.0) & (RADIUS * np.cos(phi) < z)
-    return np.where(forward, y, np.nan), (1.0 - r) ** 2 * r**order
+    return np.where(forward, y, np.nan), np.mean((1.0 - r) ** 2 * r**order, axis=0)
 
 
 @functools.cache

@@ -43,7 +43,7 @@ def test_a_guide_spares_a_part_for_sensors():
     assert photons[1] == pytest.approx(SENSOR_SHARE * 1000, abs=1)
     assert sum(photons) == 1000
     # The square around the disk.
-    np.testing.assert_allclose(sensor.centre, DISK.position)
+    np.testing.assert_allclose(sensor.centre, compiled(LAMP, SENSORS).to_local(DISK.position))
     np.testing.assert_allclose(sensor.half, DISK.radius)
     np.testing.assert_allclose(sensor.frame[2], DISK.normal)
 

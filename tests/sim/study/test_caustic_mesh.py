@@ -49,7 +49,8 @@ def test_a_plate_shifts_the_image_of_a_slit(make_bench, compile_bench):
     )
     eta = glass("N-BK7").eta(np.array([450.0, 600.0]))
     shift = plate_lateral_shift(tilt, eta, thickness)  # downhill, toward +x
-    reflectance = np.mean(fresnel_reflectance(np.cos(tilt), 1.0, eta), axis=0)
+    # s stays s at the second surface, and p stays p.
+    reflectance = np.array(fresnel_reflectance(np.cos(tilt), 1.0, eta))
     u_edges = bins.low[0] + np.arange(14) * bins.bin_size[0] + 0.005
     v_edges = bins.low[1] + np.arange(10) * bins.bin_size[1]
     expected = np.zeros((9, 13, 3))
@@ -57,7 +58,8 @@ def test_a_plate_shifts_the_image_of_a_slit(make_bench, compile_bench):
         across = overlap(shift[line] - half[0], shift[line] + half[0], u_edges)
         along = overlap(-0.003 - half[1], -0.003 + half[1], v_edges)  # v = −z
         share = np.outer(along, across) / np.prod(2.0 * half)
-        expected[:, :, band] = flux * (1.0 - reflectance[line]) ** 2 * share
+        through = np.mean((1.0 - reflectance[:, line]) ** 2)
+        expected[:, :, band] = flux * through * share
     expected /= bins.bin_area * np.diff(BANDS)
     np.testing.assert_allclose(mesh.irradiance, expected, rtol=1e-10, atol=1e-10 * expected.max())
     assert mesh.relative_error < 1e-10
@@ -122,9 +124,9 @@ def ball_strips(bins, profile_radius, eta, height):
     exit_angle, turn = theta_i + np.pi - 2.0 * theta_t, 2.0 * (theta_i - theta_t)
     fall = 0.5 * np.cos(exit_angle) + height
     radius = np.abs(0.5 * np.sin(exit_angle) - fall * np.tan(turn))
-    into = np.mean(fresnel_reflectance(np.cos(theta_i), 1.0, eta), axis=0)
-    out = np.mean(fresnel_reflectance(np.cos(theta_t), eta, 1.0), axis=0)
-    flux = flux * (1.0 - into) * (1.0 - out)
+    into = np.array(fresnel_reflectance(np.cos(theta_i), 1.0, eta))
+    out = np.array(fresnel_reflectance(np.cos(theta_t), eta, 1.0))
+    flux = flux * np.mean((1.0 - into) * (1.0 - out), axis=0)
     edges = bins.low[0] + np.arange(bins.columns + 1) * bins.bin_size[0]
     below = [np.sum(flux * np.arcsin(np.clip(x / radius, -1.0, 1.0))) / np.pi for x in edges]
     return bins.irradiance(np.diff(below)[None, :, None], [450.0, 550.0]), float(flux.sum())
