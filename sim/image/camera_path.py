@@ -31,7 +31,7 @@ from sim.image.visible_lamps import make_see_lamps
 from sim.polarised_light import make_light
 from sim.sampling.counter import hash64
 from sim.sampling.kronecker import r1_point, r2_point
-from sim.sampling.roulette import choose_branches
+from sim.sampling.roulette import choose_branches, play_roulette
 from sim.transport import EVENT_BOUNDARY, EVENT_DEPOSIT, EVENT_PASS, make_transport
 
 __all__ = ["make_film_struct", "make_render_camera"]
@@ -201,6 +201,11 @@ def make_render_camera(precision: str, features: Features) -> Any:
                     stack_throughput[depth] = side
                     stack_dispersed[depth] = dispersed
                     depth += 1
+                # The stronger branch plays as well: reflected again and again, ever fainter, it
+                # would use up the interactions that the branches behind it need.
+                throughput = play_roulette(
+                    throughput, threshold, sight.key + wp.uint64(1), wp.uint64(step)
+                )
                 alive = throughput > real(0.0)
             else:
                 alive = False
