@@ -21,7 +21,10 @@ def make_scene(*, camera_y, pixels):
         scenes.SceneObject(shape=sheet, material=scenes.Dielectric(medium="N-BK7")),
         scenes.SceneObject(shape=floor, material=scenes.Lambertian(reflectance=0.8)),
     )
-    lamp = scenes.SphereLamp(position=(0.3, 3.0, -0.2), radius=0.1, flux=100.0, spectrum="E")
+    # Its mirror image in the sheet is no part of what is seen through it.
+    lamp = scenes.SphereLamp(
+        position=(0.3, 3.0, -0.2), radius=0.1, flux=100.0, spectrum="E", visible=False
+    )
     camera = scenes.Camera(
         position=(0.0, camera_y, 0.0), look_at=(0.0, 0.0, 0.0), up=(0.0, 0.0, -1.0),
         fov_deg=float(np.degrees(2.0 * np.arctan(0.97 / camera_y))),
