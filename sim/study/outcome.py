@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -160,8 +161,12 @@ class Outcome:
         return [rows[i] for i in best]
 
     def smallest_error(self, result: ResultKind) -> float:
-        """The smallest error shown, but for meshes', which know their own."""
-        return min(row.errors.error.value for row in self.of(result) if row.replicates > 1)
+        """The smallest error shown, but for meshes', which know their own.
+
+        An error of 0 is one that the replicates could not tell from none; infinite if all are.
+        """
+        errors = [row.errors.error.value for row in self.of(result) if row.replicates > 1]
+        return min((error for error in errors if error > 0.0), default=math.inf)
 
     def reference_is_good(self, result: ResultKind) -> bool:
         """Whether the reference errs at most a tenth of the smallest error shown."""
