@@ -82,7 +82,7 @@ def test_what_is_left_out_changes_the_last_digits_at_most(small_scene, case):
     asked = set(full.features["asked_for"])
     assert set(full.features["off"]) == asked
     off = required.features["off"]
-    assert {bound for name, bound in off.items() if name not in asked} == {0.0}
+    assert max(bound for name, bound in off.items() if name not in asked) <= 1e-12
     assert required.features["canary"] is None  # it would cost seconds, and tell nothing
 
 
@@ -97,10 +97,10 @@ def choose(scene, *, check=False, **settings):
 
 
 @pytest.mark.parametrize("case", ["ball", "prism", "lens"])
-def test_the_canary_finds_equal_photons_bit_by_bit(small_scene, case):
+def test_the_canary_finds_equal_photons_one_by_one(small_scene, case):
     report = choose(CASES[case][0](small_scene), check=True).canary
     assert report.photons == 1000
-    assert report.difference == 0.0
+    assert report.difference < 1e-15  # of the flux: some ulps, where kernels differ in them
     assert report.allowed == 1e-12
 
 
@@ -129,7 +129,7 @@ def test_a_breach_forces_the_full_kernel(small_scene, judging, caplog, tmp_path)
     assert not canary["passed"]
     assert canary["difference"] > 0.04
     assert canary["allowed"] == pytest.approx(1e-7, rel=1e-4)
-    assert picture.features["off"] == {}
+    assert set(picture.features["off"]) == set(picture.features["asked_for"])
     full = sim.render(small_scene, dataclasses.replace(settings, features="all"))
     np.testing.assert_array_equal(picture.spectral_radiance, full.spectral_radiance)
     picture.save_exr(tmp_path / "out.exr")
@@ -162,7 +162,8 @@ def test_an_omission_within_its_bound_passes(small_scene):
     assert choice.canary.passed
     assert 0.0 < choice.canary.difference < 0.01 * choice.plan.bound
     assert 1e-5 < choice.plan.bound < 1e-3
-    assert choice.report()["off"]["dispersion"] == choice.plan.bound
+    # The others that are left out have bounds of rounding.
+    assert choice.report()["off"]["dispersion"] == pytest.approx(choice.plan.bound, abs=1e-11)
     # At the default tolerance it is refused.
     assert choose(scene).compiled.features.dispersion
 

@@ -15,7 +15,7 @@ from sim.study.table import COLUMNS, read_csv
 AXES = ("photons", "passes", "estimator", PLAIN_LADDER)
 TINY = dataclasses.replace(
     plan.QUICK, replicates=3, rows=4, cells=4, bands=2, axes=AXES,
-    points_s=2.0, mesh_s=0.0, bins_s=0.0, picture_s=0.0,
+    points_s=8.0, mesh_s=0.0, bins_s=0.0, picture_s=0.0,
 )
 
 
