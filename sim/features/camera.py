@@ -21,6 +21,7 @@ register(Feature(
     what="camera rays through all of an aperture: depth of field",
     judge=_judge_lens,
     flag="thin_lens",
+    cost=Cost(1.00, "ball"),
     kernel="camera",
 ))  # fmt: skip
 
@@ -37,6 +38,7 @@ register(Feature(
     what="camera rays as densely as a tent or a Gaussian weighs them",
     judge=_judge_filter,
     flag="pixel_filter",
+    cost=Cost(1.04, "ball"),
     kernel="camera",
 ))  # fmt: skip
 
@@ -52,6 +54,7 @@ register(Feature(
     what="camera paths see the lamps that they meet",
     judge=_judge_visible,
     flag="visible_lamps",
+    cost=Cost(1.05, "ball"),
     kernel="camera",
     separable=True,
 ))  # fmt: skip
