@@ -1,7 +1,7 @@
 """Features: what the camera does to light before it is a picture."""
 
 from scenes.emitters import Glowing
-from sim.features.registry import Feature, Subject, Verdict, needed, null, register
+from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
 
 __all__: list[str] = []
 

@@ -61,6 +61,7 @@ register(Feature(
     what="photons along lines through the scene, shadow rays to the sun and the sky",
     judge=_judge_distant,
     flag="distant_lamps",
+    cost=Cost(1.02, "ball"),
 ))  # fmt: skip
 
 
@@ -74,4 +75,5 @@ register(Feature(
     what="lamps and beams that shine through a mask, cell by cell",
     judge=_judge_masks,
     flag="masks",
+    cost=Cost(1.04, "ball"),
 ))  # fmt: skip

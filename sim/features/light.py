@@ -160,7 +160,7 @@ register(Feature(
     what="photons are reflected by diffuse surfaces, and light others",
     judge=_judge_interreflection,
     flag="interreflection",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(0.99, "ball"),
     separable=True,
 ))  # fmt: skip
 

@@ -27,7 +27,7 @@ register(Feature(
     what="solids touch, nest and overlap: each surface finds the media on both sides",
     judge=_judge_interfaces,
     flag="interfaces",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(0.99, "ball"),
 ))  # fmt: skip
 
 
@@ -63,7 +63,7 @@ register(Feature(
     what="Beer–Lambert along every way through a medium",
     judge=_judge_absorption,
     flag="absorption",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(1.04, "ball"),
 ))  # fmt: skip
 
 
@@ -79,7 +79,7 @@ register(Feature(
     what="surfaces that reflect by a table, or by a complex index",
     judge=_judge_finishes,
     flag="finishes",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(0.94, "ball"),
 ))  # fmt: skip
 
 
@@ -93,5 +93,5 @@ register(Feature(
     what="sheets that let one way of vibrating through",
     judge=_judge_polarisers,
     flag="polarisers",
-    cost=Cost(1.00, "ball"),
+    cost=Cost(1.01, "ball"),
 ))  # fmt: skip
