@@ -115,7 +115,7 @@ def test_the_canary_is_sent_when_asked_for(capsys, small_file):
     # ball does not need.
     line = output.splitlines()[-1]
     assert line.startswith("canary: 1000 photons differ by ")
-    assert line.endswith(" from those of the full kernel; allowed: 3e-12")
+    assert line.endswith(" from those of the full kernel; allowed: 1e-12")
     assert float(line.split()[5]) < 1e-15
 
 
