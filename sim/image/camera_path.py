@@ -42,6 +42,9 @@ MAX_INTERACTIONS = wp.constant(48)
 BRANCH_THRESHOLD = wp.constant(0.03)
 """A side branch of less throughput plays Russian roulette for this much."""
 
+LAST_PART = wp.constant(0.1)
+"""A stronger branch plays roulette for this part of a side branch's threshold."""
+
 STACK_SIZE = wp.constant(8)
 
 SHADOW_RAYS = wp.constant(4)
@@ -204,7 +207,8 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 # The stronger branch plays as well: reflected again and again, ever fainter, it
                 # would use up the interactions that the branches behind it need.
                 throughput = play_roulette(
-                    throughput, threshold, sight.key + wp.uint64(1), wp.uint64(step)
+                    throughput, real(LAST_PART) * threshold, sight.key + wp.uint64(1),
+                    wp.uint64(step),
                 )
                 alive = throughput > real(0.0)
             else:
