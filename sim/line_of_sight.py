@@ -25,7 +25,7 @@ def make_look_straight(precision: str, features: Features) -> Any:
     """Kernel: 1 for each point that no opaque surface hides from the eye."""
     transport = make_transport(precision, features)
     real, vec3, intersect = transport.real, transport.vec3, transport.intersect
-    scene_type, ray_type = transport.Scene, transport.Ray
+    scene_type, free_ray = transport.Scene, transport.free_ray
 
     @wp.kernel(module="unique", enable_backward=False)
     def look_straight(
@@ -34,12 +34,7 @@ def make_look_straight(precision: str, features: Features) -> Any:
         i = wp.tid()
         line = points[i] - eye
         left = wp.length(line) * real(NEAR)
-        ray = ray_type()
-        ray.origin = eye
-        ray.direction = wp.normalize(line)
-        ray.prim = -1
-        ray.face = -1
-        ray.prim2 = -1
+        ray = free_ray(eye, wp.normalize(line))
         seen = int(1)
         for _face in range(MOST_FACES):
             hit = intersect(scene, ray)

@@ -42,7 +42,7 @@ def make_trace_single(precision: str, features: Features) -> Any:
     transport = make_transport(precision, features)
     real, vec3, interact = transport.real, transport.vec3, transport.interact
     media_indices = transport.media_indices
-    scene_type, ray_type = transport.Scene, transport.Ray
+    scene_type, free_ray = transport.Scene, transport.free_ray
     assert features.light_of("photons") == "stokes"
     carried = make_light(precision, "stokes", polarisers=features.polarisers)
     start, turn, judge, send = carried.start, carried.turn, carried.judge, carried.send
@@ -68,12 +68,7 @@ def make_trace_single(precision: str, features: Features) -> Any:
         out_counts: wp.array(dtype=int),
     ):
         i = wp.tid()
-        ray = ray_type()
-        ray.origin = origins[i]
-        ray.direction = wp.normalize(directions[i])
-        ray.prim = -1
-        ray.face = -1
-        ray.prim2 = -1
+        ray = free_ray(origins[i], wp.normalize(directions[i]))
         indices = media_indices(scene, wavelengths_nm[i])
         light, frame = start(start_light, ups[i], ray.direction)
         count = int(0)

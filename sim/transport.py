@@ -24,6 +24,7 @@ from sim.optics.absorption import absorbed_fraction
 from sim.optics.dielectric import reflect
 from sim.optics.dispersion import tabulated_index
 from sim.path_media import make_media_functions
+from sim.rays import make_ray_functions
 from sim.scene_structs import (
     DIELECTRIC,
     LAMBERTIAN,
@@ -66,7 +67,8 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
     """Structs and device functions of one light step.
 
     Returns:
-        A namespace with the structs of `make_scene_structs` and the device functions
+        A namespace with the structs of `make_scene_structs`, the device functions of
+        `make_ray_functions`, and
         `intersect(scene, ray) -> Hit`,
         `media_indices(scene, wavelength_nm)`, `scatter(scene, ray, hit, indices) -> Interaction`,
         `interact(scene, ray, indices)`, which is both in one, `split(interaction)`, and
@@ -251,6 +253,7 @@ def make_transport(precision: str, features: Features) -> SimpleNamespace:
 
     return SimpleNamespace(
         **vars(structs),
+        **vars(make_ray_functions(precision)),
         intersect=intersect,
         media_indices=media.media_indices,
         absorption_of=absorption_of,

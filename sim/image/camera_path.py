@@ -85,6 +85,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
     scene_type, ray_type = transport.Scene, transport.Ray
     lights_type, sight_type = make_lights_struct(precision), make_sight_struct(precision)
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
+    free_ray, leaving_ray = transport.free_ray, transport.leaving_ray
     seeing = make_camera_functions(precision, features)
     look_through, place_in_pixel = seeing.look_through, seeing.place_in_pixel
     losses = features.absorption or features.finishes or features.polarisers
@@ -193,14 +194,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
                         stack_frame[depth] = frame
                     light = send(met, light, refracts)
                 if side > real(0.0):
-                    side_ray = ray_type()
-                    side_ray.origin = met.point
-                    side_ray.direction = weaker
-                    side_ray.prim = met.prim
-                    side_ray.face = met.face
-                    side_ray.prim2 = met.prim2
-                    side_ray.face2 = met.face2
-                    stack_ray[depth] = side_ray
+                    stack_ray[depth] = leaving_ray(met, weaker)
                     stack_throughput[depth] = side
                     stack_dispersed[depth] = dispersed
                     depth += 1
@@ -235,12 +229,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
         origin, direction = look_through(
             camera, real(pixel % camera.width) + x, real(pixel // camera.width) + y, u0, u1
         )
-        ray = ray_type()
-        ray.origin = origin
-        ray.direction = direction
-        ray.prim = -1
-        ray.face = -1
-        ray.prim2 = -1
+        ray = free_ray(origin, direction)
         sight = sight_type()
         sight.row = pixel
         sight.band = ALL_BANDS

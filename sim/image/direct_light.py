@@ -41,11 +41,12 @@ def make_direct_light(precision: str, features: Features) -> object:
     """
     structs, lamp_structs = make_scene_structs(precision), make_lamp_structs(precision)
     real, scene_type, interaction_type = structs.real, structs.Scene, structs.Interaction
-    ray_type, lamps_type = structs.Ray, lamp_structs.Lamps
+    lamps_type = lamp_structs.Lamps
     sight_type = make_sight_struct(precision)
     connect = make_connection(precision, features)
     connect_distant = make_distant_connection(precision)
-    intersect = make_transport(precision, features).intersect
+    transport = make_transport(precision, features)
+    intersect, leaving_ray = transport.intersect, transport.leaving_ray
 
     @wp.func
     def direct_irradiance(
@@ -71,14 +72,7 @@ def make_direct_light(precision: str, features: Features) -> object:
                     way, irradiance = connect_distant(emitter, met.normal, u0, u1)
                     distance = real(wp.inf)
             if irradiance > real(0.0):
-                ray = ray_type()
-                ray.origin = met.point
-                ray.direction = -way
-                ray.prim = met.prim
-                ray.face = met.face
-                ray.prim2 = met.prim2
-                ray.face2 = met.face2
-                hit = intersect(scene, ray)
+                hit = intersect(scene, leaving_ray(met, -way))
                 if hit.prim < 0 or hit.t >= distance * real(CLEARANCE):
                     if wp.static(features.absorption):
                         irradiance -= irradiance * absorbed_fraction(met.alpha, distance)

@@ -31,7 +31,7 @@ def make_measure_footprints(precision: str, features: Features) -> Any:
     transport = make_transport(precision, features)
     real, vec3, interact = transport.real, transport.vec3, transport.interact
     media_indices = transport.media_indices
-    scene_type, ray_type = transport.Scene, transport.Ray
+    scene_type, free_ray = transport.Scene, transport.free_ray
     camera_type = make_camera_struct(precision)
     look = make_camera_functions(precision, features).look
 
@@ -47,20 +47,16 @@ def make_measure_footprints(precision: str, features: Features) -> Any:
     ):
         i = wp.tid()
         step = real(samples)
-        ray = ray_type()
-        ray.origin = camera.position
-        ray.direction = look(
+        direction = look(
             camera,
             (real(i % samples) + real(0.5)) / step * real(camera.width),
             (real(i // samples) + real(0.5)) / step * real(camera.height),
         )
+        ray = free_ray(camera.position, direction)
         # A pixel at the image's corner is smaller in angle: cos²θ of the axis, and 1/cosθ of
         # the distance, leave the distance along the axis.
         forward = wp.normalize(wp.cross(camera.step_down, camera.step_right))
         pixel = wp.length(camera.step_right)
-        ray.prim = -1
-        ray.face = -1
-        ray.prim2 = -1
         indices = media_indices(scene, wavelength_nm)
         axial = real(0.0)
         out_prim[i] = -1

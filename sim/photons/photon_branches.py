@@ -61,6 +61,7 @@ def make_follow(precision: str, features: Features) -> object:
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
     intersect, facet_toward = transport.intersect, transport.facet_toward
     record_crossings = make_record_crossings(precision)
+    leaving_ray = transport.leaving_ray
     both_branches = features.method.branching == "weights"
     losses = features.absorption or features.finishes or features.polarisers
     mode = features.light_of("photons")
@@ -182,14 +183,7 @@ def make_follow(precision: str, features: Features) -> object:
                         stack_frame[depth] = frame
                     light = send(met, light, refracts)
                 if side_flux > real(0.0):
-                    side_ray = ray_type()
-                    side_ray.origin = met.point
-                    side_ray.direction = weaker
-                    side_ray.prim = met.prim
-                    side_ray.face = met.face
-                    side_ray.prim2 = met.prim2
-                    side_ray.face2 = met.face2
-                    stack_ray[depth] = side_ray
+                    stack_ray[depth] = leaving_ray(met, weaker)
                     stack_flux[depth] = side_flux
                     stack_history[depth] = side_history
                     depth += 1

@@ -35,6 +35,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
     transport = make_transport(precision, features)
     real, scene_type, intersect = transport.real, transport.Scene, transport.intersect
     lamp_structs, ray_type = make_lamp_structs(precision), transport.Ray
+    free_ray = transport.free_ray
     lamps_type, emitter_type = lamp_structs.Lamps, lamp_structs.Emitter
     photon_structs = make_photon_structs(precision)
     photons_type, job_type = photon_structs.Photons, photon_structs.Job
@@ -48,13 +49,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
         """Whether light from afar has met something endless before it comes near the scene."""
         if emitter.kind != DISTANT:
             return False
-        back = ray_type()
-        back.origin = ray.origin
-        back.direction = -ray.direction
-        back.prim = -1
-        back.face = -1
-        back.prim2 = -1
-        hit = intersect(scene, back)
+        hit = intersect(scene, free_ray(ray.origin, -ray.direction))
         return hit.prim >= 0
 
     @wp.func

@@ -85,6 +85,7 @@ def make_trace_chain(precision: str, features: Features) -> Any:
     transport, chain_type = structs.transport, structs.Chain
     real, vec3, interact = structs.real, structs.vec3, transport.interact
     scene_type, ray_type, met_type = transport.Scene, transport.Ray, transport.Interaction
+    free_ray = transport.free_ray
     media_indices = transport.media_indices
     losses = features.absorption or features.finishes or features.polarisers
     mode = features.light_of("photons")
@@ -112,12 +113,7 @@ def make_trace_chain(precision: str, features: Features) -> Any:
         out_signatures: wp.array(dtype=wp.uint64),
     ):
         i = wp.tid()
-        ray = ray_type()
-        ray.origin = origins[i]
-        ray.direction = directions[i]
-        ray.prim = -1
-        ray.face = -1
-        ray.prim2 = -1
+        ray = free_ray(origins[i], directions[i])
         indices = media_indices(scene, wavelengths_nm[i])
         share = real(1.0)
         if wp.static(polarised):
