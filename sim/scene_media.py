@@ -9,11 +9,19 @@ from spectra import Medium, air_index
 from spectra.arrays import FloatArray
 from spectra.dispersion import require_in_range
 
-__all__ = ["Finish", "SceneMedia", "collect_media", "require_known"]
+__all__ = ["Finish", "SceneMedia", "collect_media", "require_known", "varies_with_wavelength"]
 
 
 Finish = scenes.Mirror | scenes.Metal | scenes.Lambertian
 """What the surface of an opaque object can be, if it reflects."""
+
+
+def varies_with_wavelength(medium: Medium, air_power: int) -> bool:
+    """Whether a medium's index or what it absorbs depends on the wavelength.
+
+    Air disperses too, and is a factor of the indices that are converted: to `air_power`.
+    """
+    return medium.is_dispersive or air_power != 0 or medium.is_tinted
 
 
 @dataclass(frozen=True)
@@ -37,20 +45,12 @@ class SceneMedia:
     @property
     def tints(self) -> tuple[bool, ...]:
         """Of each medium, whether what it absorbs depends on the wavelength."""
-        return tuple(
-            one.absorption is not None and not one.absorption.is_constant for one in self.media
-        )
+        return tuple(one.is_tinted for one in self.media)
 
     @property
     def varies(self) -> tuple[bool, ...]:
-        """Of each medium, whether its index or what it absorbs depends on the wavelength.
-
-        Air disperses too, and is a factor of the indices that are converted.
-        """
-        return tuple(
-            medium.is_dispersive or power != 0 or tint
-            for medium, power, tint in zip(self.media, self.air_powers, self.tints, strict=True)
-        )
+        """Of each medium, whether its index or what it absorbs depends on the wavelength."""
+        return tuple(map(varies_with_wavelength, self.media, self.air_powers))
 
 
 def collect_media(scene: scenes.Scene) -> SceneMedia:

@@ -80,6 +80,11 @@ class Medium:
         """Whether the index depends on the wavelength at all."""
         return self.dispersion.is_dispersive
 
+    @property
+    def is_tinted(self) -> bool:
+        """Whether what it absorbs depends on the wavelength."""
+        return self.absorption is not None and not self.absorption.is_constant
+
     def eta(self, wavelength_nm: FloatOrArray) -> FloatOrArray:
         """Refractive index, relative to what :attr:`relative_to` says.
 

@@ -4,16 +4,7 @@ import numpy as np
 
 from scenes import Dielectric, Disk, Lambertian, Plane, Rectangle, is_specular
 from sim.features.boundary_error import path_error, relative_variations
-from sim.features.registry import (
-    Cost,
-    Feature,
-    Subject,
-    Verdict,
-    is_tinted,
-    needed,
-    null,
-    register,
-)
+from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
 
 __all__: list[str] = []
 
@@ -70,7 +61,7 @@ def _what_colours(subject: Subject) -> str:
         for one in subject.scene.objects
     ):
         return "diffuse surfaces reflect some wavelengths more than others"
-    tinted = [medium.name for medium in subject.media if is_tinted(medium)]
+    tinted = [medium.name for medium in subject.media if medium.is_tinted]
     return "absorption depends on the wavelength: " + ", ".join(tinted) if tinted else ""
 
 

@@ -2,15 +2,11 @@
 
 import math
 
-import numpy as np
-
 from sim.features.boundary_error import BOUNDARIES
 from sim.features.registry import Cost, Feature, Subject, Verdict, needed, null, register
 from sim.scene_neighbours import scene_size
 
 __all__: list[str] = []
-
-_SAMPLES = 257
 
 
 def _judge_interfaces(subject: Subject) -> Verdict:
@@ -39,19 +35,12 @@ def _judge_absorption(subject: Subject) -> Verdict:
     ambient = subject.media[0]
     if ambient.absorption is not None and not ambient.absorption.is_transparent:
         return needed(f"{ambient.name}, all around, absorbs")
-    edges_nm = subject.scene.film.edges_nm
-    wavelength_nm = np.linspace(edges_nm[0], edges_nm[-1], _SAMPLES)
     strongest, name = 0.0, ""
     for medium in subject.media:
-        if medium.absorption is None:
-            continue
-        if medium.absorption.wavelength_nm:
-            knots, values = medium.absorption.wavelength_nm, medium.absorption.napierian_per_m
-            alpha = max(np.max(np.interp(wavelength_nm, knots, values)), *values)
-        else:
-            alpha = max(medium.absorption.napierian_per_m)
-        if alpha > strongest:
-            strongest, name = float(alpha), medium.name
+        if medium.absorption is not None:
+            alpha = max(medium.absorption.napierian_per_m)  # linear between: a knot has the most
+            if alpha > strongest:
+                strongest, name = alpha, medium.name
     if strongest == 0.0:
         return null("no medium absorbs")
     bound = -math.expm1(-strongest * BOUNDARIES * scene_size(subject.scene))

@@ -18,6 +18,7 @@ from typing import Literal
 
 import scenes
 from sim.features.flags import Features
+from sim.scene_media import varies_with_wavelength
 from sim.scene_neighbours import near_pairs
 from spectra import Medium
 
@@ -66,14 +67,8 @@ class Subject:
 
     @cached_property
     def varying_media(self) -> tuple[bool, ...]:
-        """Of each medium, whether its index depends on the wavelength, or what it absorbs.
-
-        Air disperses too, and is a factor of the indices that are converted.
-        """
-        pairs = zip(self.media, self.air_powers, strict=True)
-        return tuple(
-            medium.is_dispersive or power != 0 or is_tinted(medium) for medium, power in pairs
-        )
+        """Of each medium, whether its index depends on the wavelength, or what it absorbs."""
+        return tuple(map(varies_with_wavelength, self.media, self.air_powers))
 
     @cached_property
     def finishes(self) -> tuple[scenes.Mirror | scenes.Metal, ...]:
@@ -92,11 +87,6 @@ class Subject:
             for item in self.scene.objects
             if isinstance(item.material, scenes.Polariser)
         )
-
-
-def is_tinted(medium: Medium) -> bool:
-    """Whether what a medium absorbs depends on the wavelength."""
-    return medium.absorption is not None and not medium.absorption.is_constant
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ class PhotonBatch:
             every: one of how many is kept of the second kind; it stands for the others.
             first: the first that is kept, 0 to `every` − 1.
         """
-        bounced = ((self.data.history.numpy()[self.slots] >> 20) & 1023) > 0
+        bounced = _bounces(self.data.history.numpy()[self.slots]) > 0
         return (
             replace(self, slots=self.slots[~bounced]),
             replace(self, slots=self.slots[bounced][first::every], stands_for=every),
@@ -74,10 +74,15 @@ class PhotonBatch:
             "side": surface & 1,
             "refractions": history & 1023,
             "reflections": (history >> 10) & 1023,
-            "bounces": (history >> 20) & 1023,
+            "bounces": _bounces(history),
             "dispersed": (history >> 30) & 1 == 1,
             "emitter": self.data.emitter.numpy()[self.slots],
         }
+
+
+def _bounces(history: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+    """Bounces off diffuse surfaces, of packed histories: see `sim.photons.photon_structs`."""
+    return (history >> 20) & 1023
 
 
 def allocate_photons(precision: str, device: str, slots: int) -> Any:
