@@ -8,12 +8,13 @@ import numpy as np
 import numpy.typing as npt
 
 from sim.charts.curves import draw_curve, style_axes
-from sim.charts.swatches import GAMUT_METHODS, draw_swatches, hex_code, to_full_brightness
+from sim.charts.swatches import draw_swatches, hex_code, to_full_brightness
 from spectra.arrays import FloatArray
 from spectra.colorimetry import chromaticity, tristimulus
 from spectra.illuminants import blackbody
 from spectra.observer import observer
 from spectra.srgb import (
+    GAMUT_METHODS,
     PRIMARIES_XY,
     encode_srgb,
     map_to_gamut,

@@ -3,30 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from spectra.arrays import FloatArray
-from spectra.srgb import encode_srgb, luminance, map_to_gamut
+from spectra.srgb import GAMUT_METHODS, Gamut, encode_srgb, luminance, map_to_gamut
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 __all__ = [
-    "GAMUT_METHODS",
-    "Gamut",
     "draw_swatches",
     "hex_code",
     "shown_colours",
     "to_full_brightness",
 ]
-
-Gamut: TypeAlias = Literal["desaturate", "clip"]
-
-GAMUT_METHODS: Final[tuple[Gamut, ...]] = ("desaturate", "clip")
-"""The gamut mappings there are, the default one first."""
 
 _DARK_TEXT_ABOVE = 0.2
 

@@ -5,8 +5,8 @@ import pytest
 from matplotlib.collections import LineCollection
 
 from sim.charts.spectrum import plot_spectrum
-from sim.charts.swatches import GAMUT_METHODS
 from spectra import EmissionSpectrum, blackbody, chromaticity, laser, spectrum, tristimulus
+from spectra.srgb import GAMUT_METHODS
 
 
 def test_a_continuous_spectrum_is_drawn_against_its_highest():
@@ -47,7 +47,7 @@ def test_the_light_stands_at_its_chromaticity(source):
     assert len(figure.axes[2].patches) == len(GAMUT_METHODS)
 
 
-def test_both_gamut_mappings_of_the_rainbow_are_side_by_side():
+def test_the_gamut_mappings_of_the_rainbow_are_side_by_side():
     strips = plot_spectrum(spectrum("D65")).axes[3]
     (image,) = strips.images
     pixels = image.get_array()
