@@ -68,6 +68,6 @@ def draw_swatches(axes: Axes, colours: Mapping[str, npt.ArrayLike]) -> None:
     axes.set_ylim(len(GAMUT_METHODS), 0.0)
     axes.set_xticks(np.arange(len(colours)) + 0.5, list(colours))
     rows = np.arange(len(GAMUT_METHODS)) + 0.5
-    axes.set_yticks(rows, GAMUT_METHODS, rotation=90.0, va="center")
+    axes.set_yticks(rows, GAMUT_METHODS)
     axes.tick_params(length=0.0)
     axes.set_frame_on(False)

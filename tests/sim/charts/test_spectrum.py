@@ -44,7 +44,15 @@ def test_the_light_stands_at_its_chromaticity(source):
     assert (mark.get_xdata()[0], mark.get_ydata()[0]) == (x, y)
     assert f"{x:.4f}" in mark.get_label()
     assert figure.get_suptitle() == source.name
-    assert len(figure.axes[2].patches) == len(GAMUT_METHODS)
+    # Each light twice: what glares is white by desaturating alone; preserving keeps its hue.
+    full, glaring = np.reshape(
+        [patch.get_facecolor() for patch in figure.axes[2].patches], (2, len(GAMUT_METHODS), 4)
+    )
+    methods = list(GAMUT_METHODS)
+    np.testing.assert_array_equal(glaring[methods.index("desaturate")], 1.0)
+    one, other = (codes[methods.index("preserve"), :3] for codes in (full, glaring))
+    assert other.max() == 1.0
+    assert other.min() <= other.max() - (one.max() - one.min())
 
 
 def test_the_gamut_mappings_of_the_rainbow_are_side_by_side():
