@@ -18,12 +18,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sim.commands.arguments import count, duration, exr_file, fraction, png_file
+from sim.commands.energy import print_books
 
 if TYPE_CHECKING:
     from scenes import Scene
     from sim.image.picture import Picture
     from sim.measure import Measurement
-    from sim.photons.energy import EnergyBooks
     from sim.settings import RenderSettings
 
 __all__ = ["SUMMARY", "add_arguments", "run"]
@@ -114,7 +114,7 @@ def run(arguments: argparse.Namespace) -> None:
         measurement = _measured(scene, settings)
         write_readings(scene, measurement.sensors, exr_path)
         if arguments.verbose:
-            _print_books(measurement.energy)
+            print_books(measurement.energy, scene.film.centres_nm.tolist())
             _print_timings(measurement.timings, time.perf_counter() - start)
         return
     png_path = arguments.png or exr_path.with_suffix(".png")
@@ -133,7 +133,7 @@ def run(arguments: argparse.Namespace) -> None:
     print(_accuracy_text(picture))
     write_readings(scene, picture.sensors, exr_path)
     if arguments.verbose:
-        _print_books(picture.energy)
+        print_books(picture.energy, scene.film.centres_nm.tolist())
         _print_timings(picture.timings, seconds)
 
 
@@ -205,16 +205,6 @@ def _accuracy_text(picture: Picture) -> str:
         f"error: {accuracy.relative_error:.2%} (noise {accuracy.relative_noise:.2%}, "
         f"bias {accuracy.relative_bias:.2%}) after {passes} passes: {picture.stopping}"
     )
-
-
-def _print_books(energy: EnergyBooks) -> None:
-    """Where the emitted flux went, in watts and as a share."""
-    books = dataclasses.asdict(energy)
-    print("energy")
-    for name, flux in books.items():
-        share = flux / energy.emitted if energy.emitted else math.nan
-        print(f"  {name:<14}{flux:14.9g} W {share:9.3%}")
-    print(f"  {'residual':<14}{energy.residual:14.3g} of the emitted")
 
 
 def _print_timings(timings: dict[str, float], seconds: float) -> None:

@@ -1,6 +1,7 @@
 """The energy books of a run: where every emitted watt went."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +23,8 @@ class EnergyBooks:
         escaped: flux that left the scene, or that an endless plane kept from coming near it.
         culled: flux dropped on purpose: paths longer than the limit, and the balance of Russian
             roulette, which is zero in expectation and may be negative.
+        by_band: the same five for each of the film's bands, by the wavelengths that were traced;
+            () where they are not kept.
     """
 
     emitted: float
@@ -29,6 +32,22 @@ class EnergyBooks:
     absorbed: float
     escaped: float
     culled: float
+    by_band: tuple[tuple[float, float, float, float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        """Take rows as JSON has them, too."""
+        rows: Any = tuple(tuple(row) for row in self.by_band)
+        object.__setattr__(self, "by_band", rows)
+
+    @property
+    def totals(self) -> tuple[float, ...]:
+        """All bands together: emitted, deposited, absorbed, escaped, culled [W]."""
+        return tuple(getattr(self, name) for name in BOOK_COLUMNS)
+
+    @property
+    def bands(self) -> "tuple[EnergyBooks, ...]":
+        """The books of each band, from the shortest wavelength to the longest."""
+        return tuple(EnergyBooks(*row) for row in self.by_band)
 
     @property
     def residual(self) -> float:
@@ -37,13 +56,26 @@ class EnergyBooks:
         return (self.emitted - spent) / self.emitted if self.emitted else 0.0
 
     @classmethod
-    def from_rows(cls, rows: npt.NDArray[np.float64]) -> "EnergyBooks":
-        """Sum (ranges, 5) rows of the kernels' books."""
-        return cls(*(float(total) for total in rows.sum(axis=0)))
+    def from_rows(
+        cls, rows: npt.NDArray[np.float64], band_rows: npt.NDArray[np.float64] | None = None
+    ) -> "EnergyBooks":
+        """Sum the kernels' books over ranges.
+
+        Args:
+            rows: (ranges, 5).
+            band_rows: (ranges, 5 bands), band by band; None: none are kept.
+        """
+        by_band = () if band_rows is None else band_rows.sum(axis=0).reshape(-1, rows.shape[1])
+        return cls(*(float(total) for total in rows.sum(axis=0)), by_band=_rows(by_band))
 
     @classmethod
     def mean(cls, books: "list[EnergyBooks]") -> "EnergyBooks":
         """Mean over passes, each of which emits the lamps' whole flux."""
-        return cls(
-            *(float(np.mean([getattr(book, name) for book in books])) for name in BOOK_COLUMNS)
-        )
+        totals = (float(np.mean([getattr(book, name) for book in books])) for name in BOOK_COLUMNS)
+        by_band = np.mean([book.by_band for book in books], axis=0) if books[0].by_band else ()
+        return cls(*totals, by_band=_rows(by_band))
+
+
+def _rows(by_band: Any) -> Any:
+    """Numbers of Python's own, which JSON can write."""
+    return tuple(tuple(map(float, row)) for row in by_band)
