@@ -7,7 +7,7 @@ defined where glass touches glass, or something opaque; it is not for
 - a polariser on glass: it would have to filter and to refract.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from scenes.polariser import Polariser
 from scenes.shapes import Disk, Plane, Rectangle
 from scenes.shapes.reach import close_pairs, may_meet
 
-__all__ = ["flush_problems"]
+__all__ = ["flush_pairs", "flush_problems"]
 
 _TOUCH = 1e-9
 """Faces nearer than this part of the smaller one's size are in one place, as in
@@ -33,15 +33,34 @@ def flush_problems(objects: Mapping[int, SceneObject]) -> list[Problem]:
     Args:
         objects: by their index in the file.
     """
-    indices = list(objects)
-    problems = []
-    for first, second in close_pairs([objects[index].shape for index in indices]):
+    return [_problem(i, objects[i], j, objects[j]) for i, j in flush_pairs(objects)]
+
+
+def flush_pairs(
+    objects: Mapping[int, SceneObject], touch: float | None = None
+) -> Iterator[tuple[int, int]]:
+    """Indices of the pairs of sheets, or of a polariser and glass, that lie in one place.
+
+    Args:
+        objects: by their index in the file.
+        touch: how near faces are in one place [m]; None: 10⁻⁹ of the smaller one's size.
+    """
+    filters = any(isinstance(one.material, Polariser) for one in objects.values())
+    indices = [
+        index for index, one in objects.items()
+        if (filters if isinstance(one.material, Dielectric) else _is_sheet(one.shape))
+    ]  # fmt: skip
+    shapes = [objects[index].shape for index in indices]
+    for first, second in close_pairs(shapes, touch or 0.0):
         i, j = indices[first], indices[second]
         if _is_clear(objects[i], objects[j]):
             continue
-        if _are_flush(objects[i].shape, objects[j].shape):
-            problems.append(_problem(i, objects[i], j, objects[j]))
-    return problems
+        if _are_flush(objects[i].shape, objects[j].shape, touch):
+            yield i, j
+
+
+def _is_sheet(shape: Any) -> bool:
+    return isinstance(shape, Rectangle | Disk | Plane)
 
 
 def _is_clear(one: SceneObject, other: SceneObject) -> bool:
@@ -49,20 +68,19 @@ def _is_clear(one: SceneObject, other: SceneObject) -> bool:
     materials = (one.material, other.material)
     if any(isinstance(material, Dielectric) for material in materials):
         return not any(isinstance(material, Polariser) for material in materials)
-    if one.material == other.material and not isinstance(one.material, Polariser):
-        return True
-    return not all(isinstance(thing.shape, Rectangle | Disk | Plane) for thing in (one, other))
+    return one.material == other.material and not isinstance(one.material, Polariser)
 
 
-def _are_flush(one: Any, other: Any) -> bool:
+def _are_flush(one: Any, other: Any, touch: float | None) -> bool:
     """Whether two shapes, one of them a sheet, lie flush in one place."""
     sizes = [
         shape.bounding_sphere()[1] for shape in (one, other) if not isinstance(shape, Plane)
     ]
-    touch = _TOUCH * float(min(sizes, default=1.0))
+    if touch is None:
+        touch = _TOUCH * float(min(sizes, default=1.0))
     if not may_meet(one, other, touch):
         return False
-    sheet, thing = (one, other) if isinstance(one, Rectangle | Disk | Plane) else (other, one)
+    sheet, thing = (one, other) if _is_sheet(one) else (other, one)
     (patch,) = flat_patches(sheet, np.array(sheet.normal))
     return any(share_a_place(patch, face, touch) for face in flat_patches(thing, patch.normal))
 
