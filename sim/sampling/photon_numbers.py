@@ -13,7 +13,8 @@ from typing import Any
 
 import warp as wp
 
-from sim.sampling.counter import hash64
+from sim.precision import precision_types
+from sim.sampling.counter import hash64, to_unit
 from sim.sampling.sobol import make_sobol_uniform
 
 __all__ = ["R5_STEPS", "make_photon_numbers"]
@@ -35,21 +36,6 @@ STEP_4 = wp.constant(wp.uint64(R5_STEPS[4]))
 
 
 @functools.cache
-def make_unit(precision: str) -> Any:
-    """Device function `unit(bits)`: a number in [0, 1), of 53 bits in float64, of 24 in float32."""
-    double = precision == "float64"
-
-    @wp.func
-    def unit(bits: wp.uint64):
-        if wp.static(double):
-            return wp.float64(bits >> wp.uint64(11)) * wp.float64(1.1102230246251565e-16)
-        else:
-            return wp.float32(bits >> wp.uint64(40)) * wp.float32(5.9604644775390625e-08)
-
-    return unit
-
-
-@functools.cache
 def make_photon_numbers(precision: str, sampler: str) -> Any:
     """Device function `photon_numbers(sobol, seeds, seed_row, index, key)`.
 
@@ -61,7 +47,7 @@ def make_photon_numbers(precision: str, sampler: str) -> Any:
         The function, which returns the five numbers of photon `index` of the stream that `key`
         and the scramble seeds from `seed_row` on belong to.
     """
-    sobol_uniform, unit = make_sobol_uniform(precision), make_unit(precision)
+    sobol_uniform, real = make_sobol_uniform(precision), precision_types(precision).real
 
     @wp.func
     def sobol_numbers(
@@ -88,12 +74,13 @@ def make_photon_numbers(precision: str, sampler: str) -> Any:
         index: wp.uint32, key: wp.uint64,
     ):
         i = wp.uint64(index)
-        shift = key + wp.uint64(3)
-        u0 = unit(hash64(shift, wp.uint64(0)) + STEP_0 * i)
-        u1 = unit(hash64(shift, wp.uint64(1)) + STEP_1 * i)
-        u2 = unit(hash64(shift, wp.uint64(2)) + STEP_2 * i)
-        u3 = unit(hash64(shift, wp.uint64(3)) + STEP_3 * i)
-        u4 = unit(hash64(shift, wp.uint64(4)) + STEP_4 * i)
+        like = real(0.0)
+        stream = key + wp.uint64(3)
+        u0 = to_unit(hash64(stream, wp.uint64(0)) + STEP_0 * i, like)
+        u1 = to_unit(hash64(stream, wp.uint64(1)) + STEP_1 * i, like)
+        u2 = to_unit(hash64(stream, wp.uint64(2)) + STEP_2 * i, like)
+        u3 = to_unit(hash64(stream, wp.uint64(3)) + STEP_3 * i, like)
+        u4 = to_unit(hash64(stream, wp.uint64(4)) + STEP_4 * i, like)
         return u0, u1, u2, u3, u4
 
     @wp.func
@@ -101,13 +88,14 @@ def make_photon_numbers(precision: str, sampler: str) -> Any:
         sobol: wp.array(dtype=wp.uint32), seeds: wp.array(dtype=wp.uint32), seed_row: int,
         index: wp.uint32, key: wp.uint64,
     ):
-        stream = key + wp.uint64(3)
         first = wp.uint64(index) * wp.uint64(5)
-        u0 = unit(hash64(stream, first))
-        u1 = unit(hash64(stream, first + wp.uint64(1)))
-        u2 = unit(hash64(stream, first + wp.uint64(2)))
-        u3 = unit(hash64(stream, first + wp.uint64(3)))
-        u4 = unit(hash64(stream, first + wp.uint64(4)))
+        like = real(0.0)
+        stream = key + wp.uint64(3)
+        u0 = to_unit(hash64(stream, first), like)
+        u1 = to_unit(hash64(stream, first + wp.uint64(1)), like)
+        u2 = to_unit(hash64(stream, first + wp.uint64(2)), like)
+        u3 = to_unit(hash64(stream, first + wp.uint64(3)), like)
+        u4 = to_unit(hash64(stream, first + wp.uint64(4)), like)
         return u0, u1, u2, u3, u4
 
     return {"sobol": sobol_numbers, "r2": r5_numbers, "random": random_numbers}[sampler]
