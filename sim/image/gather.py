@@ -160,8 +160,9 @@ def make_gather(precision: str, features: Features) -> object:
         inv_radius2 = real(1.0) / (radius * radius)
         query = wp.hash_grid_query(photons.grid, met.point, radius, group)
         candidate = int(0)
-        total = real(0.0)
-        bias = real(0.0)
+        # In double precision always: in single, 10⁶ photons on one disc would be 3 % off.
+        total = wp.float64(0.0)
+        bias = wp.float64(0.0)
         while wp.hash_grid_query_next(query, candidate):
             offset = photons.position[candidate] - met.point
             x = wp.dot(offset, offset) * inv_radius2
@@ -169,9 +170,9 @@ def make_gather(precision: str, features: Features) -> object:
                 weight = photons.weight[candidate]
                 if group >= receivers.bands:
                     weight *= receivers.spread[photons.lamp[candidate], met.prim, band]
-                total += (real(1.0) - x) * weight
-                bias += bias_kernel(x) * weight
-        return total, bias
+                total += wp.float64((real(1.0) - x) * weight)
+                bias += wp.float64(bias_kernel(x) * weight)
+        return real(total), real(bias)
 
     @wp.func
     def add_groups(
@@ -187,7 +188,7 @@ def make_gather(precision: str, features: Features) -> object:
         inv_radius2 = real(1.0) / (radius * radius)
         query = wp.hash_grid_query(photons.grid, met.point, radius)
         candidate = int(0)
-        bias = real(0.0)
+        bias = wp.float64(0.0)
         while wp.hash_grid_query_next(query, candidate):
             offset = photons.position[candidate] - met.point
             x = wp.dot(offset, offset) * inv_radius2
@@ -195,10 +196,11 @@ def make_gather(precision: str, features: Features) -> object:
                 weight = peak * photons.weight[candidate]
                 column = photons.group[candidate]
                 if column < bands:
-                    bias += bias_kernel(x) * weight * receivers.luminance[column]
+                    bias += wp.float64(bias_kernel(x) * weight * receivers.luminance[column])
                 else:
                     lamp = photons.lamp[candidate]
-                    bias += bias_kernel(x) * weight * receivers.spread_luminance[lamp, met.prim]
+                    spread = receivers.spread_luminance[lamp, met.prim]
+                    bias += wp.float64(bias_kernel(x) * weight * spread)
                     column = bands + lamp
                 sums[row, column] += wp.float64((real(1.0) - x) * weight)
         return bias
@@ -218,7 +220,7 @@ def make_gather(precision: str, features: Features) -> object:
         radius = photons.radius * sight.radius_scale
         peak = scale * peak_density(scene, met, radius)
         bias = add_groups(photons, receivers, met, radius, peak, sums, row)
-        sums[row, receivers.bands + receivers.lamps] += wp.float64(bias)
+        sums[row, receivers.bands + receivers.lamps] += bias
 
     @wp.func
     def sum_band(

@@ -1,5 +1,19 @@
-"""The energy books of a run: where every emitted watt went."""
+"""The energy books of a run: where every emitted watt went.
 
+How exact they are does not depend on how many photons there are, since only short sums are rounded
+at every step. With u = 2⁻⁵³, and relative to the flux of a column's terms without their signs: a
+photon's own columns are off by u for each surface that it meets, 256 unless `max_interactions` says
+otherwise, and by as much for the flux that each split shares out; a thread's by 256 u more for its
+photons; a range's by 64 u for its threads. Ranges and passes are added up exactly and rounded once.
+So columns hold to 10⁻¹³ at worst, in 10⁹ photons as in one. In single precision the first of these
+have u = 2⁻²⁴.
+
+References:
+    Higham (2002), *Accuracy and Stability of Numerical Algorithms*, §4.2: the bounds;
+    Shewchuk (1997), Discrete Comput. Geom. 18, 305: exact sums, as `math.fsum` has them.
+"""
+
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,11 +53,12 @@ class EnergyBooks:
     @classmethod
     def from_rows(cls, rows: npt.NDArray[np.float64]) -> "EnergyBooks":
         """Sum (ranges, 5) rows of the kernels' books."""
-        return cls(*(float(total) for total in rows.sum(axis=0)))
+        return cls(*(math.fsum(column) for column in rows.T.tolist()))
 
     @classmethod
     def mean(cls, books: "list[EnergyBooks]") -> "EnergyBooks":
         """Mean over passes, each of which emits the lamps' whole flux."""
         return cls(
-            *(float(np.mean([getattr(book, name) for book in books])) for name in BOOK_COLUMNS)
+            *(math.fsum(getattr(book, name) for book in books) / len(books)
+              for name in BOOK_COLUMNS)
         )
