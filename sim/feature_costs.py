@@ -21,6 +21,7 @@ from sim.features import Build, Feature, FeaturePlan
 from sim.image.camera import compile_camera
 from sim.image.camera_path import make_render_camera
 from sim.image.film import create_film, expose
+from sim.image.gather_radius import choose_gather_radius
 from sim.image.sight import compose_lights
 from sim.image.survey import survey_view
 from sim.launch import load_kernels
@@ -30,7 +31,6 @@ from sim.photons.photon_maps import PhotonMaps, build_photon_maps
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
-from sim.render import gather_radius
 from sim.scene_data import CompiledScene, compile_scene
 from sim.settings import ResolvedSettings
 
@@ -142,15 +142,16 @@ class _Bench:
         camera = compile_camera(compiled, self.scene.camera, small)
         survey = survey_view(compiled, camera, float(edges_nm.mean()))
         # From the pixels of the whole film: as many photons as in a rendering lie in a disc.
-        radius = self.settings.radius or scale * gather_radius(survey)
+        radius = choose_gather_radius(survey, small, self.settings)
+        width = radius.median if self.settings.radius else scale * radius.median
         receivers = compile_receivers(compiled, lamps, edges_nm)
         maps = build_photon_maps(
-            compiled, batch, receivers, radius, seed=0, pass_index=0, threads=1
+            compiled, batch, receivers, width, seed=0, pass_index=0, threads=1
         )
         direct = self.settings.direct_light == "lamps"
         lights = compose_lights(compiled.precision, maps, receivers, lamps, direct=direct)
         film = create_film(
-            small.height, small.width, edges_nm, len(lamps.spectra), self.device, passes=1
+            edges_nm, len(lamps.spectra), self.device, radius_scale=radius.scale, passes=1
         )
 
         def exposer(build: Build) -> Callable[[], None]:

@@ -2,14 +2,7 @@
 
 A pass is a pure function of the compiled scene, the settings and the pass's index: it emits
 photons, builds one photon map, and exposes the film once. Passes are independent and averaged,
-so their spread is the picture's standard error.
-
-The gather radius shrinks from pass to pass, r²ᵢ₊₁ = r²ᵢ (i + α)/(i + 1), so that bias and noise
-vanish together.
-
-Reference:
-    Knaus & Zwicker (2011), "Progressive photon mapping: a probabilistic approach", ACM Trans.
-    Graph. 30(3), eq. (15).
+so their spread is the picture's standard error. The gather radius shrinks from pass to pass.
 """
 
 import threading
@@ -30,6 +23,7 @@ from sim.features import Features
 from sim.image.camera import compile_camera
 from sim.image.camera_path import make_render_camera
 from sim.image.film import Film, create_film, expose
+from sim.image.gather_radius import GatherRadius, choose_gather_radius
 from sim.image.picture import Picture
 from sim.image.sight import compose_lights
 from sim.image.survey import Survey, make_measure_footprints, survey_view
@@ -54,10 +48,7 @@ from sim.settings import RenderSettings, ResolvedSettings
 from sim.stopping import StopRule
 from sim.stopwatch import Stopwatch
 
-__all__ = ["compile_lamps_for", "gather_radius", "kernels_of", "radius_shrinkage", "render"]
-
-FOOTPRINTS_A_RADIUS = 2.0
-"""The first pass gathers over a disc this many pixel widths in radius."""
+__all__ = ["compile_lamps_for", "kernels_of", "render"]
 
 
 def render(
@@ -96,11 +87,12 @@ def render(
         survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
         lamps = compile_lamps_for(compiled, survey, plan)
         receivers = compile_receivers(compiled, lamps, edges_nm)
-        film = create_film(
-            scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device,
-            passes=plan.passes,
+        radius = choose_gather_radius(
+            survey, scene.film, plan, unseen=_radius_unseen(compiled)
         )
-        radius = plan.radius or gather_radius(survey, unseen=_radius_unseen(compiled))
+        film = create_film(
+            edges_nm, len(lamps.spectra), device, radius_scale=radius.scale, passes=plan.passes
+        )
         sensors = compile_sensors(compiled)
     studio = _Studio(compiled, lamps, receivers, camera, sensors, plan, radius, watch)
     tally = SensorTally(sensors) if sensors is not None else None
@@ -176,34 +168,9 @@ def _refuse_endless_light(scene: scenes.Scene, plan: ResolvedSettings) -> None:
             raise SettingsError("bounces", plan.bounces, f"0, {reason}")
 
 
-def radius_shrinkage(pass_index: int, alpha: float) -> float:
-    """Radius of a pass relative to the first one's (Knaus & Zwicker 2011, eq. 15)."""
-    i = np.arange(1.0, pass_index + 1.0)
-    return float(np.sqrt(np.prod((i + alpha) / (i + 1.0))))
-
-
 def _radius_unseen(compiled: CompiledScene) -> float | None:
     """A radius for a picture of lamps alone, on which nothing depends as far as one can tell."""
     return 0.01 * compiled.bounding_radius if compiled.features.visible_lamps else None
-
-
-def gather_radius(survey: Survey, *, unseen: float | None = None) -> float:
-    """The first pass's gather radius, from the median pixel's footprint [m].
-
-    Args:
-        survey: what the camera sees.
-        unseen: the radius if it sees no diffuse surface, in a picture that can do without.
-
-    Raises:
-        SettingsError: no pixel sees a diffuse surface to measure it on.
-    """
-    if len(survey.widths) == 0:
-        if unseen is not None:
-            return unseen
-        raise SettingsError(
-            "radius", None, "a radius in metres, since the camera sees no diffuse surface"
-        )
-    return FOOTPRINTS_A_RADIUS * float(np.median(survey.widths))
 
 
 _Pass = tuple[PhotonMaps, EnergyBooks, PassCrossings | None]
@@ -220,7 +187,7 @@ class _Studio:
     camera: Any
     sensors: SensorBank | None
     plan: ResolvedSettings
-    radius: float
+    radius: GatherRadius
     watch: Stopwatch
 
     def photon_maps(self) -> Generator[_Pass, None, None]:
@@ -257,7 +224,7 @@ class _Studio:
                 stop=stop,
                 on_done=self.watch.count_photons,
             )
-        radius = self.radius * radius_shrinkage(pass_index, self.plan.alpha)
+        radius = self.radius.of_pass(pass_index, self.plan.alpha)
         with self.watch.timing("build photon map"):
             maps = build_photon_maps(
                 self.compiled, batch, self.receivers, radius, seed=self.plan.seed,

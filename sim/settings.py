@@ -2,7 +2,7 @@
 
 A setting left at ``None`` takes the scene's own default (its ``[render]`` table), then the value
 in `DEFAULTS`. `RenderSettings.resolved` does so, and what it returns has no ``None`` left but the
-gather radius, whose default depends on the camera.
+gather radius in metres, in whose place one in pixels stands.
 """
 
 from __future__ import annotations
@@ -67,7 +67,9 @@ _WHOLE_NUMBERS: Final = {
     "seed": (0, 2**63 - 1),
     "threads": (1, 1024),
 }
-_POSITIVE_NUMBERS: Final = {"radius": math.inf, "target_error": 1.0, "time_budget": math.inf}
+_POSITIVE_NUMBERS: Final = {
+    "radius": math.inf, "radius_pixels": 1000.0, "target_error": 1.0, "time_budget": math.inf
+}
 _PRECISIONS: Final = ("float32", "float64")
 _DIRECT_LIGHTS: Final = ("lamps", "photons")
 _POLARISATIONS: Final = ("auto", "averaged", "s-p", "stokes")
@@ -91,7 +93,10 @@ class RenderSettings:
             relative to the pixel's luminance plus the mean luminance.
         time_budget: Time for the rendering [s]; no round of passes is begun that would exceed it,
             but for the first two.
-        radius: Gather radius of the first pass [m]; None: from the pixel's footprint.
+        radius: Gather radius of the first pass [m], the same everywhere; None: as `radius_pixels`
+            says.
+        radius_pixels: Gather radius of the first pass in widths of the pixel, which differ with
+            what it sees and how far away that is.
         alpha: How slowly the gather radius shrinks, r²ᵢ₊₁ = r²ᵢ (i + α)/(i + 1) (Knaus and
             Zwicker 2011); 1 keeps it.
         direct_light: What shows light that comes straight from a lamp: "lamps", by shadow rays,
@@ -121,6 +126,7 @@ class RenderSettings:
     target_error: float | None = None
     time_budget: float | None = None
     radius: float | None = None
+    radius_pixels: float = 2.0
     alpha: float = 2 / 3
     direct_light: DirectLight = "lamps"
     polarisation: Polarisation = "auto"
@@ -174,7 +180,7 @@ class RenderSettings:
             scene: The scene that is to be rendered.
 
         Returns:
-            The same settings with nothing left open but, perhaps, the radius.
+            The same settings with nothing left open but, perhaps, the radius in metres.
         """
         values = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         for field in ("photons", "passes", "radius", "max_interactions", "bounces"):
@@ -209,7 +215,7 @@ class RenderSettings:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class ResolvedSettings(RenderSettings):
-    """Render settings with nothing left open, except that the radius may be None."""
+    """Render settings with nothing left open, except that the radius in metres may be None."""
 
     photons: int
     passes: int

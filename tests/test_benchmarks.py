@@ -1,25 +1,39 @@
-"""The benchmarks' history: what is recorded can be read, and compared with what is asked."""
+"""The benchmarks: their history can be read and compared, and contestants do equal work."""
 
 import csv
 import importlib.util
 import re
+import shutil
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 HERE = Path(__file__).parent / "benchmarks"
 
 
 @pytest.fixture(scope="module")
-def history():
-    """The module that keeps it; benchmarks are scripts, and no package."""
-    spec = importlib.util.spec_from_file_location("benchmark_history", HERE / "history.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # where dataclasses look for their module
-    spec.loader.exec_module(module)
-    yield module
-    del sys.modules[spec.name]
+def load():
+    """Loads one of their modules; benchmarks are scripts, and no package."""
+    loaded = []
+
+    def load_module(name):
+        spec = importlib.util.spec_from_file_location(name, HERE / f"{name}.py")
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module  # where dataclasses, and other benchmarks, look for it
+        loaded.append(name)
+        spec.loader.exec_module(module)
+        return module
+
+    yield load_module
+    for name in loaded:
+        del sys.modules[name]
+
+
+@pytest.fixture(scope="module")
+def history(load):
+    return load("history")
 
 
 def read(path):
@@ -51,3 +65,14 @@ def test_the_record_is_in_order(history):
             assert float(row["low"]) <= value <= float(row["high"]), row
         if row["asked"]:
             assert re.fullmatch(r"[<>]=? -?[\d.]+", row["asked"]), row
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+def test_the_c_program_traces_the_same_photons(history, load, tmp_path):
+    # Deposits, their flux and the energy books, to 1e-9: no ratio of rates means anything else.
+    rates = load("tracer_rates")
+    nephroid = rates.Nephroid("ball", 20_000, polarisation="averaged")
+    assert rates.can_follow(nephroid.compiled)
+    assert not rates.can_follow(rates.Nephroid("ball", 1000).compiled)
+    _, *theirs = rates.Rival("cc", tmp_path, nephroid, "ball").run()
+    rates.check_equal_work("ball", nephroid.totals(), np.array(theirs))

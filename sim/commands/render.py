@@ -58,7 +58,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="draw the photons that the first pass stores, coloured by wavelength, "
                              "and nothing else (default file: SCENE.photons.png, or --png)")
     parser.add_argument("--radius", type=float, metavar="M",
-                        help="gather radius of the first pass [m] (default: two pixels' width)")
+                        help="gather radius of the first pass [m], the same everywhere")
+    parser.add_argument("--radius-pixels", type=float, default=2.0, metavar="W",
+                        help="gather radius of the first pass in widths of each pixel on what it "
+                             "sees (default: 2)")
     parser.add_argument("--alpha", type=float, default=2 / 3, metavar="A",
                         help="how slowly the radius shrinks from pass to pass; 1: not at all "
                              "(default: 2/3)")

@@ -59,6 +59,7 @@ def make_film_struct() -> Any:
     `sim.image.gather` fills it; `turn` of `turns` is the pass within its `round`, `rounds_before`
     counts the complete ones. `tally` holds of each pixel the running mean and squared deviations of
     its luminance, of the part of it that is the gather's bias, and of the rest, in this order.
+    `radius_scale` is each pixel's gather radius in that of the photon map.
     """
 
     @wp.struct
@@ -67,6 +68,7 @@ def make_film_struct() -> Any:
         mean: wp.array2d(dtype=wp.float64)
         squares: wp.array2d(dtype=wp.float64)
         tally: wp.array2d(dtype=wp.float64)
+        radius_scale: wp.array(dtype=wp.float32)
         round: int
         turn: int
         turns: int
@@ -232,6 +234,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
         ray = free_ray(origin, direction)
         sight = sight_type()
         sight.row = pixel
+        sight.radius_scale = real(film.radius_scale[pixel])
         sight.band = ALL_BANDS
         sight.weight = real(1.0) / real(film.turns)
         half_range_nm = real(0.5) * receivers.band_width_nm * real(receivers.bands)

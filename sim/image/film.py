@@ -86,19 +86,21 @@ class Film:
 
 
 def create_film(
-    height: int, width: int, edges_nm: FloatArray, lamps: int, device: str, *, passes: int
+    edges_nm: FloatArray, lamps: int, device: str, *,
+    radius_scale: npt.NDArray[np.float32], passes: int,
 ) -> Film:
     """An unexposed film, with scratch for the sums of lamps beside those of the bands.
 
     Args:
-        height: pixels.
-        width: pixels.
         edges_nm: (bands + 1,) band edges [nm].
         lamps: emitters that shine.
         device: where it lives.
+        radius_scale: (height, width) each pixel's gather radius in that of the photon map.
         passes: how many passes it will be exposed to.
     """
+    height, width = radius_scale.shape
     data = make_film_struct()()
+    data.radius_scale = wp.array(radius_scale.ravel(), dtype=wp.float32, device=device)
     size = (height * width, len(edges_nm) - 1)
     data.sample = wp.zeros((size[0], size[1] + lamps + 1), dtype=wp.float64, device=device)
     data.mean = wp.zeros(size, dtype=wp.float64, device=device)

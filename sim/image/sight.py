@@ -28,6 +28,7 @@ def make_sight_struct(precision: str) -> Any:
         row: int  # of the film
         band: int  # or ALL_BANDS
         deal: int  # which of the undispersed photons it gathers
+        radius_scale: real  # of its gather, in the photon map's radius
         weight: real
         wavelength_nm: real
         key: wp.uint64  # of its roulette

@@ -1,5 +1,20 @@
-"""The energy books of a run: where every emitted watt went."""
+"""The energy books of a run: where every emitted watt went.
 
+How exact they are does not depend on how many photons there are, since only short sums are rounded
+at every step. With u = 2⁻⁵³, and relative to the flux of a column's terms without their signs: a
+photon's own columns are off by u for each surface that it meets, 256 unless `max_interactions` says
+otherwise, and by as much for the flux that each split shares out; a thread's by 256 u more for its
+photons; a range's by 64 u for its threads. Ranges and passes are added up exactly and rounded once.
+So columns hold to 10⁻¹³ at worst, in 10⁹ photons as in one. In single precision the first of these
+have u = 2⁻²⁴. Those of a band take in a range's photons one by one, 16,384 in four colours: 10⁻¹¹
+at worst.
+
+References:
+    Higham (2002), *Accuracy and Stability of Numerical Algorithms*, §4.2: the bounds;
+    Shewchuk (1997), Discrete Comput. Geom. 18, 305: exact sums, as `math.fsum` has them.
+"""
+
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -65,17 +80,20 @@ class EnergyBooks:
             rows: (ranges, 5).
             band_rows: (ranges, 5 bands), band by band; None: none are kept.
         """
-        by_band = () if band_rows is None else band_rows.sum(axis=0).reshape(-1, rows.shape[1])
-        return cls(*(float(total) for total in rows.sum(axis=0)), by_band=_rows(by_band))
+        columns = () if band_rows is None else _sums(band_rows)
+        by_band = np.reshape(columns, (-1, rows.shape[1])).tolist()
+        return cls(*_sums(rows), by_band=tuple(map(tuple, by_band)))
 
     @classmethod
     def mean(cls, books: "list[EnergyBooks]") -> "EnergyBooks":
         """Mean over passes, each of which emits the lamps' whole flux."""
-        totals = (float(np.mean([getattr(book, name) for book in books])) for name in BOOK_COLUMNS)
-        by_band = np.mean([book.by_band for book in books], axis=0) if books[0].by_band else ()
-        return cls(*totals, by_band=_rows(by_band))
+        count = len(books)
+        totals = [total / count for total in _sums(np.array([book.totals for book in books]))]
+        by_band = [[value / count for value in _sums(np.array(rows))] for rows in
+                   zip(*(book.by_band for book in books), strict=True)]  # fmt: skip
+        return cls(*totals, by_band=tuple(map(tuple, by_band)))
 
 
-def _rows(by_band: Any) -> Any:
-    """Numbers of Python's own, which JSON can write."""
-    return tuple(tuple(map(float, row)) for row in by_band)
+def _sums(rows: npt.NDArray[np.float64]) -> list[float]:
+    """Of each column of (n, columns) rows, the sum, rounded once."""
+    return [math.fsum(column) for column in rows.T.tolist()]

@@ -27,6 +27,7 @@ from sim.photons.photon_structs import (
 from sim.polarised_light import make_light
 from sim.sampling.counter import hash64, to_unit
 from sim.sampling.directions import sample_cosine_hemisphere, to_world
+from sim.sampling.draws import BOUNCE, BOUNCE_ROULETTE, FAINT_BRANCH, SPLIT
 from sim.sampling.roulette import choose_branches, play_roulette
 from sim.sensors.crossing import make_record_crossings
 from sim.transport import (
@@ -173,7 +174,7 @@ def make_follow(precision: str, features: Features) -> object:
                 if wp.static(not both_branches):
                     room = False
                 flux, side_flux, swapped = choose_branches(
-                    flux - side_flux, side_flux, threshold, room, job.key + wp.uint64(1), draw
+                    flux - side_flux, side_flux, threshold, room, job.key + SPLIT, draw
                 )
                 if swapped:
                     ray.direction = weaker
@@ -191,7 +192,7 @@ def make_follow(precision: str, features: Features) -> object:
                     depth += 1
                 # The stronger branch plays as well: a path reflected again and again, and ever
                 # fainter, would use up the interactions that the branches behind it need.
-                flux = play_roulette(flux, threshold, job.key + wp.uint64(2), draw)
+                flux = play_roulette(flux, threshold, job.key + FAINT_BRANCH, draw)
                 culled += before - flux - side_flux
                 alive = flux > real(0.0)
             elif met.event == EVENT_PASS:
@@ -222,7 +223,7 @@ def make_follow(precision: str, features: Features) -> object:
                             goes_on = flux * diffuse_reflectance(scene, finish, wavelength_nm)
                             history = add_bounce(mark_dispersed(history, finish.varies))
                             draw = draws + wp.uint64(step)
-                            way = bounce(met.normal, hash64(job.key + wp.uint64(3), draw), flux)
+                            way = bounce(met.normal, hash64(job.key + BOUNCE, draw), flux)
                             if wp.static(features.meshes):
                                 # About a smooth normal, but never through the facet.
                                 facet = facet_toward(scene, met, ray.direction)
@@ -238,7 +239,7 @@ def make_follow(precision: str, features: Features) -> object:
                     deposited += flux - goes_on
                     if wp.static(features.interreflection):
                         flux = play_roulette(
-                            goes_on, start_flux * real(BOUNCE_THRESHOLD), job.key + wp.uint64(4),
+                            goes_on, start_flux * real(BOUNCE_THRESHOLD), job.key + BOUNCE_ROULETTE,
                             draws + wp.uint64(step),
                         )
                         culled += goes_on - flux

@@ -18,6 +18,7 @@ from sim.photons.photon_branches import FLOWS, make_follow
 from sim.photons.photon_structs import (
     make_photon_structs,
 )
+from sim.sampling.draws import first_draw
 from sim.transport import (
     make_transport,
 )
@@ -101,7 +102,7 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                 wavelength_nm = sample_wavelength(
                     lamps, lamps.emitters[job.emitter], u - wp.floor(u)
                 )
-                draws = (wp.uint64(index) << wp.uint64(24)) + (wp.uint64(colour) << wp.uint64(17))
+                draws = first_draw(index, colour)
                 went = follow(
                     scene, job, ray, first, wavelength_nm, flux, light, frame, draws, out_photons,
                     out_counts,

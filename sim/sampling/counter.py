@@ -9,8 +9,6 @@ Reference:
     (the finaliser of SplitMix64: a bijection of 64 bits, so distinct counters never collide).
 """
 
-from typing import Any
-
 import numpy as np
 import warp as wp
 
@@ -36,9 +34,16 @@ def hash64(key: wp.uint64, counter: wp.uint64):
 
 
 @wp.func
-def to_unit(bits: wp.uint64, like: Any):
-    """A number in [0, 1) of the precision of `like`, from the top 24 bits (exact in float32)."""
-    return type(like)(wp.uint32(bits >> wp.uint64(40))) * type(like)(5.9604644775390625e-08)
+def to_unit(bits: wp.uint64, like: wp.float32):
+    """A number in [0, 1) of the precision of `like`: in float32 the top 24 bits, exactly."""
+    return wp.float32(bits >> wp.uint64(40)) * wp.float32(5.9604644775390625e-08)
+
+
+# Warp chooses by the type of `like`.
+@wp.func  # type: ignore[no-redef]
+def to_unit(bits: wp.uint64, like: wp.float64):  # noqa: F811
+    """A number in [0, 1) of the precision of `like`: in float64 the top 53 bits, exactly."""
+    return wp.float64(bits >> wp.uint64(11)) * wp.float64(1.1102230246251565e-16)
 
 
 def fold_key(*parts: int) -> int:

@@ -12,7 +12,7 @@ from typing import Any
 
 import warp as wp
 
-from sim.sampling.counter import hash64
+from sim.sampling.counter import hash64, to_unit
 
 __all__ = ["r1_point", "r2_point"]
 
@@ -26,8 +26,8 @@ STEP_Y = wp.constant(wp.uint32(0x91E10DA5))
 
 @wp.func
 def unit_of(bits: wp.uint32, like: Any):
-    """A number in [0, 1) of the precision of `like`, from the top 24 bits (exact in float32)."""
-    return type(like)(bits >> wp.uint32(8)) * type(like)(5.9604644775390625e-08)
+    """A number in [0, 1) of the precision of `like`: all 32 bits, in float32 the top 24."""
+    return to_unit(wp.uint64(bits) << wp.uint64(32), like)
 
 
 @wp.func

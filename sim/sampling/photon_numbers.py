@@ -3,9 +3,27 @@
 Two numbers stand for its direction, one for its wavelength, two for its place on the lamp. They
 are drawn jointly, so that well-spread points fill the whole space of paths evenly.
 
-Reference:
+No photon is emitted twice. A stream, one lamp's photons at one target in one pass, has at most 2²⁸
+(the limit of `RenderSettings.photons`), and an index of 32 bits:
+
+- Sobol points are linear over the bits of the index. Each number's first 32 digits have rank 32,
+  and Owen's scramble is one to one on them: in float64 not even one number comes back in 2³²
+  photons. In float32 numbers of 24 digits do, but the digits of any two together have rank 32.
+- The R sequence turns by odd steps modulo 2⁶⁴, so that no number returns before 2⁶⁴ photons. Cut to
+  53 bits none does before 2³²: k α is never so near a whole number. Cut to the 24 bits of float32
+  each does, but a point lamp's three never at once.
+- Random numbers are a bijection of their counters, 5 i + k. Cut to b bits, n photons of d numbers
+  hold n²/2^(b d + 1) alike pairs: of 10⁹ photons of d = 3 in float64 10⁻³⁰, in float32 10⁻⁴.
+
+Streams and passes have scrambles and shifts of their own. Those are hashes, so that two photons of
+different streams agree in d numbers of b bits by chance alone, with probability 2^(−b d).
+
+References:
     Roberts (2018), "The unreasonable effectiveness of quasirandom sequences": in d dimensions the
-    steps are g⁻¹ … g⁻ᵈ, with g the positive root of g^(d+1) = g + 1.
+    steps are g⁻¹ … g⁻ᵈ, with g the positive root of g^(d+1) = g + 1. With d = 5 two pairs of
+    dimensions fill in stripes up to some 10⁶ photons: 6 g⁻³ − 4 g⁻² and g⁻³ + 10 g⁻⁵ are nearly
+    whole.
+    Owen (1998), J. Complexity 14, 466.
 """
 
 import functools
@@ -13,7 +31,9 @@ from typing import Any
 
 import warp as wp
 
-from sim.sampling.counter import hash64
+from sim.precision import precision_types
+from sim.sampling.counter import hash64, to_unit
+from sim.sampling.draws import EMISSION
 from sim.sampling.sobol import make_sobol_uniform
 
 __all__ = ["R5_STEPS", "make_photon_numbers"]
@@ -35,21 +55,6 @@ STEP_4 = wp.constant(wp.uint64(R5_STEPS[4]))
 
 
 @functools.cache
-def make_unit(precision: str) -> Any:
-    """Device function `unit(bits)`: a number in [0, 1), of 53 bits in float64, of 24 in float32."""
-    double = precision == "float64"
-
-    @wp.func
-    def unit(bits: wp.uint64):
-        if wp.static(double):
-            return wp.float64(bits >> wp.uint64(11)) * wp.float64(1.1102230246251565e-16)
-        else:
-            return wp.float32(bits >> wp.uint64(40)) * wp.float32(5.9604644775390625e-08)
-
-    return unit
-
-
-@functools.cache
 def make_photon_numbers(precision: str, sampler: str) -> Any:
     """Device function `photon_numbers(sobol, seeds, seed_row, index, key)`.
 
@@ -61,15 +66,15 @@ def make_photon_numbers(precision: str, sampler: str) -> Any:
         The function, which returns the five numbers of photon `index` of the stream that `key`
         and the scramble seeds from `seed_row` on belong to.
     """
-    sobol_uniform, unit = make_sobol_uniform(precision), make_unit(precision)
+    sobol_uniform, real = make_sobol_uniform(precision), precision_types(precision).real
 
     @wp.func
     def sobol_numbers(
         sobol: wp.array(dtype=wp.uint32), seeds: wp.array(dtype=wp.uint32), seed_row: int,
         index: wp.uint32, key: wp.uint64,
     ):
-        low = hash64(key, wp.uint64(index) * wp.uint64(2))
-        low2 = hash64(key, wp.uint64(index) * wp.uint64(2) + wp.uint64(1))
+        low = hash64(key + EMISSION, wp.uint64(index) * wp.uint64(2))
+        low2 = hash64(key + EMISSION, wp.uint64(index) * wp.uint64(2) + wp.uint64(1))
         bits0 = wp.uint32(low)
         bits1 = wp.uint32(low >> wp.uint64(21))
         bits2 = wp.uint32(low >> wp.uint64(42))
@@ -88,12 +93,12 @@ def make_photon_numbers(precision: str, sampler: str) -> Any:
         index: wp.uint32, key: wp.uint64,
     ):
         i = wp.uint64(index)
-        shift = key + wp.uint64(3)
-        u0 = unit(hash64(shift, wp.uint64(0)) + STEP_0 * i)
-        u1 = unit(hash64(shift, wp.uint64(1)) + STEP_1 * i)
-        u2 = unit(hash64(shift, wp.uint64(2)) + STEP_2 * i)
-        u3 = unit(hash64(shift, wp.uint64(3)) + STEP_3 * i)
-        u4 = unit(hash64(shift, wp.uint64(4)) + STEP_4 * i)
+        like = real(0.0)
+        u0 = to_unit(hash64(key + EMISSION, wp.uint64(0)) + STEP_0 * i, like)
+        u1 = to_unit(hash64(key + EMISSION, wp.uint64(1)) + STEP_1 * i, like)
+        u2 = to_unit(hash64(key + EMISSION, wp.uint64(2)) + STEP_2 * i, like)
+        u3 = to_unit(hash64(key + EMISSION, wp.uint64(3)) + STEP_3 * i, like)
+        u4 = to_unit(hash64(key + EMISSION, wp.uint64(4)) + STEP_4 * i, like)
         return u0, u1, u2, u3, u4
 
     @wp.func
@@ -101,13 +106,13 @@ def make_photon_numbers(precision: str, sampler: str) -> Any:
         sobol: wp.array(dtype=wp.uint32), seeds: wp.array(dtype=wp.uint32), seed_row: int,
         index: wp.uint32, key: wp.uint64,
     ):
-        stream = key + wp.uint64(3)
         first = wp.uint64(index) * wp.uint64(5)
-        u0 = unit(hash64(stream, first))
-        u1 = unit(hash64(stream, first + wp.uint64(1)))
-        u2 = unit(hash64(stream, first + wp.uint64(2)))
-        u3 = unit(hash64(stream, first + wp.uint64(3)))
-        u4 = unit(hash64(stream, first + wp.uint64(4)))
+        like = real(0.0)
+        u0 = to_unit(hash64(key + EMISSION, first), like)
+        u1 = to_unit(hash64(key + EMISSION, first + wp.uint64(1)), like)
+        u2 = to_unit(hash64(key + EMISSION, first + wp.uint64(2)), like)
+        u3 = to_unit(hash64(key + EMISSION, first + wp.uint64(3)), like)
+        u4 = to_unit(hash64(key + EMISSION, first + wp.uint64(4)), like)
         return u0, u1, u2, u3, u4
 
     return {"sobol": sobol_numbers, "r2": r5_numbers, "random": random_numbers}[sampler]

@@ -15,6 +15,7 @@ from sim.geometry.flat import plane_coordinates
 from sim.optics.absorption import absorbed_fraction
 from sim.photons.photon_structs import is_dispersed, make_photon_structs
 from sim.sampling.counter import hash64, to_unit
+from sim.sampling.draws import LOT
 from sim.scene_structs import make_scene_structs
 from sim.sensors.sensor_structs import SENSOR_RAYS, make_sensor_structs
 
@@ -23,9 +24,6 @@ __all__ = ["COUNT_BINS", "COUNT_RAYS", "make_record_crossings"]
 COUNT_BINS = wp.constant(1)
 COUNT_RAYS = wp.constant(2)
 """Columns of a range's counters; the first one counts its deposits."""
-
-LOT_KEY = wp.constant(wp.uint64(0x5E2504))
-"""Tells the lots of rays from the other random numbers of the same photon."""
 
 
 @functools.cache
@@ -86,7 +84,7 @@ def make_record_crossings(precision: str) -> object:
     @wp.func
     def keep_ray(
         crossings: crossings_type, slot: int, sensor: int, point: vec3, direction: vec3,
-        wavelength_nm: real, flux: real, history: int, emitter: int, lot: wp.float32,
+        wavelength_nm: real, flux: real, history: int, emitter: int, lot: wp.float64,
     ):
         crossings.sensor[slot] = sensor
         crossings.position[slot] = point
@@ -122,7 +120,7 @@ def make_record_crossings(precision: str) -> object:
                     slot += job.first_slot
                     left = flux - flux * absorbed_fraction(alpha, length)
                     if sensor.kind == SENSOR_RAYS:
-                        lot = to_unit(hash64(job.key + LOT_KEY, draw), wp.float32(0.0))
+                        lot = to_unit(hash64(job.key + LOT, draw), wp.float64(0.0))
                         keep_ray(
                             crossings, slot, i, ray.origin + ray.direction * length, ray.direction,
                             wavelength_nm, left, history, job.emitter, lot,

@@ -45,7 +45,7 @@ def allocate_crossings(crossings: Any, bank: SensorBank, precision: str, slots: 
         crossings.flux = wp.empty(slots, dtype=wp.float64, device=device)
         crossings.history = wp.empty(slots, dtype=int, device=device)
         crossings.emitter = wp.empty(slots, dtype=int, device=device)
-        crossings.lot = wp.empty(slots, dtype=wp.float32, device=device)
+        crossings.lot = wp.empty(slots, dtype=wp.float64, device=device)
 
 
 def collect_crossings(

@@ -63,6 +63,6 @@ def make_sensor_structs(precision: str) -> SimpleNamespace:
         flux: wp.array(dtype=wp.float64)
         history: wp.array(dtype=int)
         emitter: wp.array(dtype=int)
-        lot: wp.array(dtype=wp.float32)
+        lot: wp.array(dtype=wp.float64)
 
     return SimpleNamespace(Sensor=Sensor, Sensors=Sensors, Crossings=Crossings)

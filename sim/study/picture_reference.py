@@ -60,10 +60,10 @@ class _LongRun:
 
     def __init__(self, workshop: Workshop, setup: Setup, seeds: SeedSource, part: float) -> None:
         """Begin, with this part of the setup's gather radius and four times its photons."""
-        assert setup.settings.radius is not None and setup.settings.photons is not None
+        assert setup.settings.photons is not None
         self.workshop, self.seeds, self.part = workshop, seeds, part
-        self.setup = setup.with_settings(
-            radius=part * setup.settings.radius, alpha=1.0, photons=4 * setup.settings.photons
+        self.setup = setup.with_radius(part).with_settings(
+            alpha=1.0, photons=4 * setup.settings.photons
         )
         self.colours: list[FloatArray] = []
         self.biases: list[FloatArray] = []

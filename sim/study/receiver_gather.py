@@ -73,6 +73,7 @@ def make_gather_bins(precision: str, features: Features) -> Any:
         sight = sight_type()
         sight.row = i
         sight.band = ALL_BANDS
+        sight.radius_scale = real(1.0)
         sight.weight = real(1.0)
         for k in range(POINTS):
             x, y = r2_point(hash64(key, wp.uint64(i)), wp.uint32(k), sight.weight)

@@ -57,10 +57,8 @@ def _grid(centre: Setup, quick: bool) -> Mapping[str, Setup]:
 
 
 def _radius(centre: Setup, quick: bool) -> Mapping[str, Setup]:
-    assert centre.settings.radius is not None
     factors = (0.5, 2.0) if quick else (0.25, 0.5, 0.7, 1.4, 2.0, 4.0)
-    radius = centre.settings.radius
-    return {_times(f): centre.with_settings(radius=radius * f) for f in factors}
+    return {_times(factor): centre.with_radius(factor) for factor in factors}
 
 
 def _alpha(centre: Setup, quick: bool) -> Mapping[str, Setup]:

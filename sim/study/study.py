@@ -63,8 +63,7 @@ def run_study(scene: scenes.Scene, plan: Plan, *, seed: int, threads: int, tell:
     tell("compile")
     centre = Setup(scene, RenderSettings(threads=threads).resolved(scene))
     workshop.load([centre])
-    if centre.settings.radius is None:
-        centre = centre.with_settings(radius=workshop.radius(centre))
+    workshop.radius(centre)  # refuses a view of no receiver now, not after the first points
     workshop.chain = find_chain(
         scene, _pilot(workshop, centre, seeds.take()), cells=plan.cells, bands=plan.bands
     )

@@ -22,6 +22,7 @@ import scenes
 from sim.device import start_device
 from sim.image.camera import compile_camera
 from sim.image.film import Film, create_film, expose, turns_of
+from sim.image.gather_radius import GatherRadius, choose_gather_radius
 from sim.image.sight import compose_lights
 from sim.image.survey import Survey, survey_view
 from sim.launch import load_kernels
@@ -32,7 +33,7 @@ from sim.photons.photon_batch import PhotonBatch
 from sim.photons.photon_maps import build_photon_maps
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
-from sim.render import compile_lamps_for, gather_radius, kernels_of, radius_shrinkage
+from sim.render import compile_lamps_for, kernels_of
 from sim.scene_data import CompiledScene, compile_scene
 from sim.study.caustic_mesh import Resolution, trace_caustic_mesh
 from sim.study.glass_chain import ChainPhotons, GlassChain, bin_chain, select_chain
@@ -108,9 +109,13 @@ class Workshop:
             kernels.update((id(kernel), kernel) for kernel in needed)
         load_kernels(list(kernels.values()), device=self._device, threads=self.threads)
 
-    def radius(self, setup: Setup) -> float:
-        """The gather radius that the view suggests [m]."""
-        return gather_radius(self.bench(setup).survey)
+    def radius(self, setup: Setup) -> GatherRadius:
+        """The setup's gather radius, pixel by pixel.
+
+        Raises:
+            SettingsError: no pixel sees a diffuse surface to measure the radius on.
+        """
+        return choose_gather_radius(self.bench(setup).survey, setup.scene.film, setup.settings)
 
     def lamps(self, setup: Setup, seed: int) -> Lamps:
         """The lamps of one run: as a rendering makes them, with a pilot of its own."""
@@ -168,10 +173,12 @@ class Workshop:
         key = (film.bands, lamps)
         if key not in self._films:
             edges = np.asarray(film.edges_nm)
+            size = np.ones((film.height, film.width), dtype=np.float32)
             self._films[key] = create_film(
-                film.height, film.width, edges, lamps, self._device, passes=passes
+                edges, lamps, self._device, radius_scale=size, passes=passes
             )
         used = self._films[key]
+        used.data.radius_scale.assign(self.radius(setup).scale.ravel())
         used.data.mean.zero_()
         used.data.tally.zero_()
         return replace(used, turns=turns_of(passes), passes=0)
@@ -204,6 +211,7 @@ class _Run:
         self.seed = self.camera_seed = seed
         self.chain = workshop.chain if "bins" in results else None
         self.bench = workshop.bench(setup)
+        self.radius = workshop.radius(setup)
         self.costs = Costs()
         with self.costs.timing("trace"):
             self.lamps = workshop.lamps(setup, seed)
@@ -241,10 +249,9 @@ class _Run:
     def _lights(self, batch: PhotonBatch, pass_index: int, *, direct: bool) -> Any:
         """What gathers see of a batch."""
         settings = self.setup.settings
-        assert settings.radius is not None
         self.maps = build_photon_maps(
             self.bench.compiled, batch, self.receivers,
-            settings.radius * radius_shrinkage(pass_index, settings.alpha),
+            self.radius.of_pass(pass_index, float(settings.alpha)),
             seed=self.seed, pass_index=pass_index, threads=self.workshop.threads,
         )
         return compose_lights(

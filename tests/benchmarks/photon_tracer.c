@@ -534,7 +534,7 @@ static inline void store(Photons *photons, Vec point, Vec direction, double wave
 /* The number in [0, 1) that decides at interaction `step` of a photon; `purpose` 1: side branch. */
 static inline double roulette(const Stream *stream, int purpose, uint64_t draws, int step) {
     uint64_t bits = hash64(stream->key + (uint64_t)purpose, draws + (uint64_t)step);
-    return (double)(uint32_t)(bits >> 40) * 0x1p-24;
+    return (double)(bits >> 11) * 0x1p-53;
 }
 
 /* A photon of one wavelength, about to meet `hit`, and all its branches. */

@@ -4,6 +4,7 @@
     kernels   full kernels over those that are compiled for what a scene requires
     savings   what Sobol points, aiming and branch weights are worth, and how fast errors fall
     scaling   how cost grows with photons, pixels and bands
+    presets   each preset against other photons and passes at equal time: half an hour, when named
     picture   1920 × 1080 of the lens at the preset `standard`: some minutes, only when named
 
 Prints ratios, each with its least and greatest or its 95 % interval, and what is asked of it.
@@ -18,13 +19,15 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import kernels
+import presets
 import savings
 import scaling
 import standard_picture
 import tracer_rates
 from history import Measure, record
 
-BENCHMARKS = ("rates", "kernels", "savings", "scaling", "picture")
+ALWAYS = ("rates", "kernels", "savings", "scaling")
+BENCHMARKS = (*ALWAYS, "presets", "picture")
 SCENES = ("ball", "prism", "lens")
 
 
@@ -39,6 +42,8 @@ def works(options: argparse.Namespace) -> Iterator[Callable[[], list[Measure]]]:
             yield lambda name=name: kernels.compare(name, max(1, options.repetitions // 3))
         if "savings" in options.benchmarks:
             yield lambda name=name: savings.study(name)
+        if "presets" in options.benchmarks:
+            yield lambda name=name: presets.measures(name)
     if "scaling" in options.benchmarks:
         yield lambda: scaling.measures(options.plot)
     if "picture" in options.benchmarks:
@@ -51,8 +56,8 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "benchmarks", nargs="*", metavar="BENCHMARK", default=list(BENCHMARKS[:-1]),
-        help="rates, kernels, savings, scaling (all four if none is named), picture",
+        "benchmarks", nargs="*", metavar="BENCHMARK", default=list(ALWAYS),
+        help="rates, kernels, savings, scaling (all four if none is named), presets, picture",
     )
     parser.add_argument("--scenes", nargs="+", default=SCENES, metavar="SCENE")
     parser.add_argument("--photons", type=int, default=500_000, help="of the rates")

@@ -51,13 +51,16 @@ class Darkroom:
         ]
         self.photons = [batch.to_numpy() for batch in self.batches]
 
-    def create_film(self, *, width: int = 1, height: int = 1, passes: int = 1) -> Any:
+    def create_film(
+        self, *, width: int = 1, height: int = 1, passes: int = 1, radius_scale: float = 1.0
+    ) -> Any:
         """An unexposed film of the scene's bands."""
         from sim.image.film import create_film
 
         lamps = len(self.lamps.spectra)
         return create_film(
-            height, width, self.edges_nm, lamps, self.compiled.device, passes=passes
+            self.edges_nm, lamps, self.compiled.device, passes=passes,
+            radius_scale=np.full((height, width), radius_scale, dtype=np.float32),
         )
 
     def expose(self, film: Any, camera: scenes.Camera, pass_index: int = 0) -> None:

@@ -100,13 +100,15 @@ def test_neighbouring_counters_and_keys_are_uncorrelated():
 
 
 def test_the_ends_of_the_range():
-    bits = np.array([0, 2**40 - 1, 2**40, 2**64 - 1], dtype=np.uint64)
-    outs = [wp.zeros(4, dtype=dtype, device="cpu") for dtype in (wp.float32, wp.float64)]
-    inputs = [wp.array(bits, dtype=wp.uint64, device="cpu")]
-    wp.launch(bits_to_unit, dim=4, inputs=inputs, outputs=outs, device="cpu")
-    for out in outs:
-        # 24 bits: 1 - 2⁻²⁴ is the largest float32 below 1, and nothing rounds up to 1.
-        assert out.numpy().tolist() == [0.0, 0.0, 2.0**-24, 1.0 - 2.0**-24]
+    # Of 24 bits in float32, of 53 in float64: nothing rounds up to 1.
+    for column, digits in enumerate((24, 53)):
+        last = 2 ** (64 - digits)
+        bits = np.array([0, last - 1, last, 2**64 - 1], dtype=np.uint64)
+        outs = [wp.zeros(4, dtype=dtype, device="cpu") for dtype in (wp.float32, wp.float64)]
+        inputs = [wp.array(bits, dtype=wp.uint64, device="cpu")]
+        wp.launch(bits_to_unit, dim=4, inputs=inputs, outputs=outs, device="cpu")
+        expected = [0.0, 0.0, 2.0**-digits, 1.0 - 2.0**-digits]
+        assert outs[column].numpy().tolist() == expected
 
 
 def test_keys_depend_on_every_part_and_on_their_order():
