@@ -12,8 +12,8 @@ deepest inside the other solid, and one inner point decides what is left.
   pierced faces are asked how deep they are; if none is, so are points behind some triangles. The
   depth found is never too much, and often too little. It can miss solids that share space without
   an edge through a face's inside, as twins shifted along their own edges do, if no point that is
-  asked is in both; and, of more than 131,072 pairs of triangles near one another, those that are
-  not followed.
+  asked is in both; and, of more than 131,072 pairs of triangles near one another, or 262,144
+  triangles, those that are not followed.
 """
 
 from typing import Any
@@ -41,7 +41,9 @@ _MOST = 1 << 17
 """Triangles, and pairs of them, that are followed at once: time, and memory, are bounded."""
 
 _PROBES = 8
-"""Points of which the depth inside triangles is found; each asks all of them."""
+_ASKED = 1 << 20
+"""Points of which the depth inside triangles is found, at most; each asks all of the triangles, and
+all together about this many, so that the largest meshes do not keep a scene from loading."""
 
 _STEEPEST = 2.0
 """A lens's height changes by at most this times the way, where it matters: near its surface."""
@@ -131,12 +133,18 @@ def _between_meshes(one: FloatArray, other: FloatArray, touch: float) -> float:
     ]
     if np.any(low > high) or not (len(near[0]) and len(near[1])):
         return 0.0
+    probe = max(1, min(_PROBES, _ASKED // max(len(one), len(other))))
+    steps = [1 + len(corners) // (2 * _MOST) for corners in near]
+    near = [corners[::step] for corners, step in zip(near, steps, strict=True)]
     i, j = box_pairs(near[0], near[1], _MOST)
     sides = ((near[0], near[1][j], i, other), (near[1], near[0][i], j, one))
-    probes = [(_piercing(rows, mine, faces, touch), whole) for mine, faces, rows, whole in sides]
+    probes = [
+        (_piercing(rows, mine, faces, touch)[:probe], whole) for mine, faces, rows, whole in sides
+    ]
     depth = _deepest_of(probes)
     if depth <= touch:
-        depth = _deepest_of([(_just_inside(mine, touch), whole) for mine, _, _, whole in sides])
+        probes = [(_just_inside(mine, touch, probe), whole) for mine, _, _, whole in sides]
+        depth = _deepest_of(probes)
     if depth > touch:
         for middle in (0.5 * (low + high), one.mean(axis=(0, 1)), other.mean(axis=(0, 1))):
             depth = max(depth, min(depth_inside(middle, one), depth_inside(middle, other)))
@@ -148,13 +156,13 @@ def _deepest_of(probes: list[tuple[FloatArray, FloatArray]]) -> float:
     return max([0.0, *(depth_inside(point, whole) for points, whole in probes for point in points)])
 
 
-def _just_inside(corners: FloatArray, touch: float) -> FloatArray:
+def _just_inside(corners: FloatArray, touch: float, count: int) -> FloatArray:
     """(k, 3): points behind the middles of some triangles.
 
     What is just behind its own surface, and deeper than `touch` inside another one, is in both,
     even where the surfaces are the same; where solids are flush, it is outside the other one.
     """
-    some = corners[np.unique(np.linspace(0, len(corners) - 1, _PROBES).astype(np.int64))]
+    some = corners[np.unique(np.linspace(0, len(corners) - 1, count).astype(np.int64))]
     normals = np.cross(some[:, 1] - some[:, 0], some[:, 2] - some[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
