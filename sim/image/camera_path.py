@@ -8,8 +8,10 @@ mixed behind a prism, and a pixel that sees no glass costs one path, not one for
 Pixels behind glass are dear, so their bands take turns: with S turns a pass follows every S-th
 band, shifted from pixel to pixel, and S passes make one complete sample of the film.
 
-Radiance divided by the square of the index is constant along a ray: a refraction multiplies the
-throughput by (η_i/η_t)², seen along the camera ray.
+Radiance divided by the square of the index is constant along a ray. What a path carries is the
+throughput of that basic radiance, which losses and splits alone make smaller, so that roulette
+takes a branch in glass for what it is worth outside. Where light is found, (η_o/η_i)² of the media
+at the camera and there makes radiance of it.
 
 References:
     Jensen (1996), "Global illumination using photon maps", §4.
@@ -122,6 +124,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
         threshold = sight.weight * real(BRANCH_THRESHOLD)
         dispersed = int(0)
         met_dispersive = int(0)
+        eta_camera = real(1.0)
         step = int(0)
         while step < MAX_INTERACTIONS:
             if not alive:
@@ -143,12 +146,15 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 dispersed = stack_dispersed[depth]
                 alive = bool(True)
             met = interact(scene, ray, indices)
+            if step == 0:
+                eta_camera = indices[met.medium]
             if wp.static(features.visible_lamps):
                 parted = int(dispersed)
                 if wp.static(features.absorption):
                     parted = parted | scene.media[met.medium].tints
                 if (sight.band == ALL_BANDS) != (parted == 1):
-                    scale = throughput / lights.receivers.band_width_nm
+                    eta = eta_camera / indices[met.medium]
+                    scale = throughput * eta * eta / lights.receivers.band_width_nm
                     see_lamps(lights, ray, met, sight, scale, light, frame, sample)
             if wp.static(polarised):
                 if met.event == EVENT_BOUNDARY:
@@ -172,10 +178,10 @@ def make_render_camera(precision: str, features: Features) -> Any:
             elif met.event == EVENT_BOUNDARY:
                 stronger, weaker, refracts = split(met)
                 side = throughput * met.reflectance
-                main = (throughput - side) * met.eta * met.eta
+                main = throughput - side
                 if refracts == 0:
                     main = throughput * met.reflectance
-                    side = (throughput - main) * met.eta * met.eta
+                    side = throughput - main
                 ray.origin = met.point
                 ray.direction = stronger
                 ray.prim = met.prim
@@ -208,7 +214,8 @@ def make_render_camera(precision: str, features: Features) -> Any:
             else:
                 alive = False
                 if met.event == EVENT_DEPOSIT and (sight.band == ALL_BANDS or dispersed == 1):
-                    scale = throughput / lights.receivers.band_width_nm
+                    eta = eta_camera / indices[met.medium]
+                    scale = throughput * eta * eta / lights.receivers.band_width_nm
                     gather(scene, lights, met, sight, scale, sample)
             step += 1
         return met_dispersive
