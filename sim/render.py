@@ -100,7 +100,7 @@ def render(
             scene.film.height, scene.film.width, edges_nm, len(lamps.spectra), device,
             passes=plan.passes,
         )
-        radius = plan.radius or gather_radius(survey, unseen=_radius_unseen(compiled))
+        radius = _radius_of(compiled, survey, plan)
         sensors = compile_sensors(compiled)
     studio = _Studio(compiled, lamps, receivers, camera, sensors, plan, radius, watch)
     tally = SensorTally(sensors) if sensors is not None else None
@@ -182,6 +182,27 @@ def radius_shrinkage(pass_index: int, alpha: float) -> float:
     return float(np.sqrt(np.prod((i + alpha) / (i + 1.0))))
 
 
+def _radius_of(compiled: CompiledScene, survey: Survey, plan: ResolvedSettings) -> float:
+    """The first pass's gather radius: as it is asked for, or as the survey says [m].
+
+    Raises:
+        SettingsError: the scene's coordinates cannot resolve it, or the scene is smaller.
+    """
+    size = 2.0 * compiled.bounding_radius
+    least = size * float(np.finfo(plan.precision).eps)
+    endless = any(isinstance(one.shape, scenes.Plane) for one in compiled.scene.objects)
+    most = np.inf if endless else size
+    if plan.radius is None:
+        radius = gather_radius(survey, unseen=_radius_unseen(compiled))
+        return float(np.clip(radius, least, most))
+    if not least <= plan.radius <= most:
+        allowed = f"at least {least:.2g} m, which {plan.precision} resolves here"
+        if not endless:
+            allowed += f", at most {most:.3g} m, the scene's size"
+        raise SettingsError("radius", plan.radius, allowed)
+    return plan.radius
+
+
 def _radius_unseen(compiled: CompiledScene) -> float | None:
     """A radius for a picture of lamps alone, on which nothing depends as far as one can tell."""
     return 0.01 * compiled.bounding_radius if compiled.features.visible_lamps else None
@@ -195,15 +216,18 @@ def gather_radius(survey: Survey, *, unseen: float | None = None) -> float:
         unseen: the radius if it sees no diffuse surface, in a picture that can do without.
 
     Raises:
-        SettingsError: no pixel sees a diffuse surface to measure it on.
+        SettingsError: no pixel sees a diffuse surface to measure it on, or all see what the
+            camera stands on.
     """
-    if len(survey.widths) == 0:
+    widths = survey.widths[survey.widths > 0.0]
+    if len(widths) == 0:
         if unseen is not None:
             return unseen
-        raise SettingsError(
-            "radius", None, "a radius in metres, since the camera sees no diffuse surface"
-        )
-    return FOOTPRINTS_A_RADIUS * float(np.median(survey.widths))
+        reason = "the camera stands on all that it sees"
+        if len(survey.widths) == 0:
+            reason = "the camera sees no diffuse surface"
+        raise SettingsError("radius", None, f"a radius in metres, since {reason}")
+    return FOOTPRINTS_A_RADIUS * float(np.median(widths))
 
 
 _Pass = tuple[PhotonMaps, EnergyBooks, PassCrossings | None]
