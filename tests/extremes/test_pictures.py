@@ -64,8 +64,8 @@ def render(scene, **settings):
 
 
 def assert_finite(picture):
-    numbers = (picture.spectral_radiance, picture.standard_error, *vars(picture.accuracy).values())
-    for values in numbers:
+    errors = (picture.standard_error, *vars(picture.accuracy).values())
+    for values in (picture.spectral_radiance, *errors):
         assert np.all(np.isfinite(values))
     assert np.all(picture.spectral_radiance >= 0.0)
     assert np.all(np.isfinite(dataclasses.astuple(picture.energy)))
@@ -165,7 +165,7 @@ def test_radii_of_an_ulp_give_finite_pictures(usual, precision, eps, ulps):
 
 @pytest.mark.parametrize("radius", [5e-324, 1e-160, 1e-17, 1e3, 1e200])
 def test_radii_that_nothing_could_resolve_are_refused(precision, radius):
-    with pytest.raises(sim.SettingsError, match=r"radius: .* not allowed; allowed: at least") as told:
+    with pytest.raises(sim.SettingsError, match=r"radius: .* allowed: at least") as told:
         render(bench(), precision=precision, radius=radius)
     assert "the scene's size" in str(told.value)
 
@@ -177,8 +177,8 @@ def test_radii_that_nothing_could_resolve_are_refused(precision, radius):
     ("position", "at"),
     [
         (BALL_AT, (0.1, 0.0, -0.2001)),  # in the middle of the glass
-        (BALL_AT + (0.0, BALL_RADIUS, 0.0), (0.3, 0.0, 0.4)),  # on it, looking in
-        (BALL_AT + (0.0, 0.0, BALL_RADIUS), (0.3, 0.0, 1.5)),  # on it, looking out
+        ((0.1, 0.7 + BALL_RADIUS, -0.2), (0.3, 0.0, 0.4)),  # on it, looking in
+        ((0.1, 0.7, -0.2 + BALL_RADIUS), (0.3, 0.0, 1.5)),  # on it, looking out
         (LAMP_AT, (0.3, 0.0, 0.4)),  # where the lamp is
         ((0.3, 1e-9, 0.9), (0.1, 0.0, 0.0)),  # a nanometre above the floor
     ],
@@ -191,14 +191,14 @@ def test_the_camera_may_be_anywhere(precision, position, at):
 
 def test_a_camera_on_what_it_sees_asks_for_a_radius(precision):
     scene = bench(camera=look((0.3, 0.0, 0.9), (0.1, -1.0, 0.0)))
-    with pytest.raises(sim.SettingsError, match=r"radius: .* the camera stands on all that it sees"):
+    with pytest.raises(sim.SettingsError, match="the camera stands on all that it sees"):
         render(scene, precision=precision)
     assert_finite(render(scene, precision=precision, radius=0.05))
 
 
 def test_a_camera_that_looks_at_nothing_asks_for_a_radius_and_sees_nothing(precision):
     scene = bench(camera=look((0.3, 2.0, 3.5), (0.3, 9.0, 4.5)))
-    with pytest.raises(sim.SettingsError, match=r"radius: .* the camera sees no diffuse surface"):
+    with pytest.raises(sim.SettingsError, match="the camera sees no diffuse surface"):
         render(scene, precision=precision)
     picture = render(scene, precision=precision, radius=0.05)
     assert not picture.spectral_radiance.any()
