@@ -32,7 +32,10 @@ def eps() -> dict[str, float]:
 
 @dataclass(frozen=True)
 class _Follow:
-    """Rays through a few objects, by the kernel that is compiled for everything."""
+    """Rays through a few objects, by the kernel that is compiled for everything but one thing.
+
+    Indices are taken as they are: the formula of air, which would convert them, ends at 1.69 µm.
+    """
 
     def __call__(
         self,
@@ -56,7 +59,9 @@ class _Follow:
             scene,
             precision=precision,
             device=start_device("cpu"),
-            features=Features(media_count=len(collect_media(scene).media)),
+            features=Features(
+                media_count=len(collect_media(scene).media), air_conversion=False
+            ),
         )
         starts, ways, waves = (
             np.asarray(a, dtype=np.float64) for a in (origins, directions, wavelengths_nm)
