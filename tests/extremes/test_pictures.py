@@ -89,8 +89,8 @@ def test_light_is_linear_over_sixty_orders_of_magnitude(usual, precision, eps, f
     picture = render(bench(lamps=(flux,)), precision=precision)
     assert_finite(picture)
     ratio = picture.spectral_radiance / flux / usual[precision].spectral_radiance
-    # A power of two changes no digit, but that float32 has fewer for what is below 1e-38; else every
-    # product is rounded its own way, some dozens.
+    # A power of two changes no digit, but that float32 has fewer for what is below 1e-38; else
+    # every product is rounded its own way, some dozens.
     is_power = math.frexp(flux)[0] == 0.5 and precision == "float64"
     tolerance = 0.0 if is_power else 64 * eps[precision]
     np.testing.assert_allclose(ratio, 1.0, rtol=0, atol=tolerance)
