@@ -78,6 +78,7 @@ def render(
 
     Raises:
         scenes.SceneError: the scene lacks something that a picture needs.
+        SettingsError: the gather radius, or the precision, does not do for this scene.
         DeviceError: the device does not exist.
         KeyboardInterrupt: on Ctrl-C, within a fraction of a second.
     """
@@ -117,8 +118,12 @@ def render(
                 break
     energy, closed = EnergyBooks.mean(books), plan.closed(film.passes)
     origin = Origin(scene=scene, settings=closed, energy=energy)
+    radiance = film.radiance()
+    if not np.all(np.isfinite(radiance)):
+        allowed = "'float64': the radiance of this scene is beyond the numbers of float32"
+        raise SettingsError("precision", plan.precision, allowed)
     return Picture(
-        spectral_radiance=film.radiance(),
+        spectral_radiance=radiance,
         standard_error=film.standard_error(),
         accuracy=film.accuracy(),
         edges_nm=edges_nm,

@@ -31,8 +31,8 @@ def make_count(precision):
         """Photons within the radius of each place, as a gather finds them."""
         i = wp.tid()
         query = wp.hash_grid_query(photons.grid, places[i], photons.radius)
-        candidate = int(0)
-        found = int(0)
+        candidate = wp.int32(0)
+        found = wp.int32(0)
         inverse = real(1.0) / (photons.radius * photons.radius)
         while wp.hash_grid_query_next(query, candidate):
             offset = photons.position[candidate] - places[i]

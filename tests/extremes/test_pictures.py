@@ -110,6 +110,38 @@ def test_fluxes_beyond_are_refused(flux):
         scenes.Point(position=(0, 0, 0), flux=flux, spectrum="E")
 
 
+def test_what_no_file_and_no_float32_can_hold_is_said(tmp_path):
+    # 1e30 W on a hundredth of a micrometre: radiances of 1e40, where float32 ends at 3.4e38.
+    scene = bench(scale=1e-8, lamps=(1e30,))
+    with pytest.raises(sim.SettingsError, match="beyond the numbers of float32"):
+        render(scene, precision="float32")
+    picture = render(scene)
+    assert_finite(picture)
+    with pytest.raises(sim.CapacityError, match="does not fit into an EXR file"):
+        picture.save_exr(tmp_path / "picture.exr")
+    assert list(tmp_path.iterdir()) == []
+
+
+# --- lamps -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("radius", [1e-9, 1e-6, 1e-3])
+def test_the_smallest_ball_of_light_is_a_point(usual, precision, radius):
+    # Seen from 2 m a ball of 1 mm is a point to (R/d)² = 1e-7, and its penumbrae are 1e-3 wide. No
+    # pixel sees it, as the camera looks down from above it.
+    at = tuple(LAMP_AT.tolist())
+    lamp = scenes.SphereLamp(position=at, radius=radius, flux=1.0, spectrum="E")
+    scene = bench().model_copy(update={"emitters": (lamp,)})
+    picture = render(scene, precision=precision, photons=8000)
+    assert_finite(picture)
+    expected = render(bench(), photons=8000).spectral_radiance
+    # Direct light is nearly the same to the digit, and the caustic's photons are thousands.
+    off = np.abs(picture.spectral_radiance / expected - 1.0)
+    assert np.median(off) <= 0.01
+    mean = picture.spectral_radiance.mean() / expected.mean()
+    assert mean == pytest.approx(1.0, abs=0.02)
+
+
 # --- size --------------------------------------------------------------------------------------
 
 
