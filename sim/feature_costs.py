@@ -21,6 +21,7 @@ from sim.features import Build, Feature, FeaturePlan
 from sim.image.camera import compile_camera
 from sim.image.camera_path import make_render_camera
 from sim.image.film import create_film, expose
+from sim.image.gather_radius import gather_radius
 from sim.image.sight import compose_lights
 from sim.image.survey import survey_view
 from sim.launch import load_kernels
@@ -30,7 +31,6 @@ from sim.photons.photon_maps import PhotonMaps, build_photon_maps
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
-from sim.render import gather_radius
 from sim.scene_data import CompiledScene, compile_scene
 from sim.settings import ResolvedSettings
 

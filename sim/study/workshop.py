@@ -22,6 +22,7 @@ import scenes
 from sim.device import start_device
 from sim.image.camera import compile_camera
 from sim.image.film import Film, create_film, expose, turns_of
+from sim.image.gather_radius import gather_radius, radius_shrinkage
 from sim.image.sight import compose_lights
 from sim.image.survey import Survey, survey_view
 from sim.launch import load_kernels
@@ -32,7 +33,7 @@ from sim.photons.photon_batch import PhotonBatch
 from sim.photons.photon_maps import build_photon_maps
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
-from sim.render import compile_lamps_for, gather_radius, kernels_of, radius_shrinkage
+from sim.render import compile_lamps_for, kernels_of
 from sim.scene_data import CompiledScene, compile_scene
 from sim.study.caustic_mesh import Resolution, trace_caustic_mesh
 from sim.study.glass_chain import ChainPhotons, GlassChain, bin_chain, select_chain

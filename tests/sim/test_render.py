@@ -8,6 +8,7 @@ import pytest
 
 import scenes
 import sim
+from sim.image.gather_radius import gather_radius, radius_shrinkage
 from sim.image.survey import Survey
 
 render_module = sys.modules[sim.render.__module__]
@@ -166,16 +167,16 @@ def test_the_radius_is_a_few_pixels_of_the_median_width():
     survey = Survey(
         widths=np.array([1.0, 2.0, 50.0]), points=np.zeros((3, 3)), objects=np.zeros(3, dtype=int)
     )
-    radius = render_module.gather_radius(survey)
+    radius = gather_radius(survey)
     assert 1.0 * 2.0 <= radius <= 5.0 * 2.0
     wider = dataclasses.replace(survey, widths=3.0 * survey.widths)
-    assert render_module.gather_radius(wider) == pytest.approx(3.0 * radius)
+    assert gather_radius(wider) == pytest.approx(3.0 * radius)
 
 
 @pytest.mark.parametrize("alpha", [2 / 3, 0.5, 1.0])
 def test_the_radius_shrinks_as_knaus_and_zwicker_say(alpha):
     # r²ᵢ₊₁ / r²ᵢ = (i + α)/(i + 1), i = 1, 2, … (Knaus & Zwicker 2011, eq. 15).
-    radii = np.array([render_module.radius_shrinkage(index, alpha) for index in range(20)])
+    radii = np.array([radius_shrinkage(index, alpha) for index in range(20)])
     i = np.arange(1.0, 20.0)
     assert radii[0] == 1.0
     shrinkage = radii[1:] ** 2 / radii[:-1] ** 2
