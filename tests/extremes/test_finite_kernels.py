@@ -13,7 +13,6 @@ import sys
 import pytest
 
 PROGRAM = """
-import sys
 import warp as wp
 
 wp.config.verify_fp = True
@@ -21,19 +20,12 @@ wp.empty = wp.zeros
 import scenes
 import sim
 
-name, precision = sys.argv[1:]
-scene = scenes.load(name)
-film = scene.film.model_copy(update={"width": 12, "height": 8})
-settings = sim.RenderSettings(photons=1000, passes=1, threads=1, precision=precision)
-picture = sim.render(scene.model_copy(update={"film": film}), settings)
-print(f"rendered {picture.spectral_radiance.mean():.6g}", flush=True)
-
-"""
-
-SENTINEL = """
-import warp as wp
-
-wp.config.verify_fp = True
+for name, precision in (("prism", "float64"), ("ball", "float32")):
+    scene = scenes.load(name)
+    film = scene.film.model_copy(update={"width": 12, "height": 8})
+    settings = sim.RenderSettings(photons=1000, passes=1, threads=1, precision=precision)
+    picture = sim.render(scene.model_copy(update={"film": film}), settings)
+    print(f"rendered {name}: {picture.spectral_radiance.mean():.6g}", flush=True)
 
 
 @wp.kernel(enable_backward=False)
@@ -42,31 +34,34 @@ def make_nan(x: wp.array(dtype=wp.float64), out: wp.array(dtype=wp.float64)):
 
 
 out = wp.zeros(1, dtype=wp.float64, device="cpu")
-wp.launch(make_nan, dim=1, inputs=[wp.array([-1.0], dtype=wp.float64, device="cpu"), out],
-          device="cpu")
+inputs = [wp.array([-1.0], dtype=wp.float64, device="cpu"), out]
+print("now a NaN", flush=True)
+wp.launch(make_nan, dim=1, inputs=inputs, device="cpu")
 """
 
 REPORT = re.compile(r"array\.h:\d+ - (\w+)\(")
 
 
-def reports(path, program, *arguments):
-    """What the verification has said of a program's arrays, and all that the program printed."""
-    script = path / "program.py"
-    script.write_text(program)
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory):
+    """Lines that the program has printed."""
+    script = tmp_path_factory.mktemp("verified") / "program.py"
+    script.write_text(PROGRAM)
     done = subprocess.run(
-        [sys.executable, str(script), *arguments], capture_output=True, text=True, check=True
+        [sys.executable, str(script)], capture_output=True, text=True, check=True
     )
-    lines = done.stdout.splitlines()
-    return [line for line in lines if REPORT.search(line)], lines
+    return done.stdout.splitlines()
 
 
-def test_the_verification_sees_a_nan(tmp_path):
-    found, _ = reports(tmp_path, SENTINEL)
-    assert any("store" in line and "nan" in line for line in found)
+def test_the_verification_sees_a_nan(printed):
+    found = [line for line in printed[printed.index("now a NaN") :] if REPORT.search(line)]
+    assert len(found) == 1
+    assert "store" in found[0]
+    assert "nan" in found[0]
 
 
-@pytest.mark.parametrize(("name", "precision"), [("prism", "float64"), ("ball", "float32")])
-def test_gallery_scenes_are_finite_from_end_to_end(tmp_path, name, precision):
-    found, lines = reports(tmp_path, PROGRAM, name, precision)
-    assert any(line.startswith("rendered") for line in lines)
+def test_gallery_scenes_are_finite_from_end_to_end(printed):
+    lines = printed[: printed.index("now a NaN")]
+    assert sum(line.startswith("rendered") for line in lines) == 2
+    found = [line for line in lines if REPORT.search(line)]
     assert [line for line in found if not line.endswith("load(addrinf")] == []
