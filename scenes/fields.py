@@ -17,6 +17,7 @@ from pydantic import AfterValidator, AllowInfNan, Field, Strict, ValidationInfo
 from scenes.errors import Problem, refusal
 
 __all__ = [
+    "LIGHT_RANGE",
     "MAX_INVERSE_LENGTH_PER_M",
     "MAX_LENGTH_M",
     "MIN_SIZE_M",
@@ -29,6 +30,7 @@ __all__ = [
     "Direction",
     "Extent",
     "InverseLength",
+    "Light",
     "NonNegative",
     "Number",
     "Position",
@@ -52,6 +54,9 @@ MAX_LENGTH_M: Final = 1e9
 
 MAX_INVERSE_LENGTH_PER_M: Final = 1e30
 """No absorption coefficient may exceed this: nothing passes an atom's layer of it."""
+
+LIGHT_RANGE: Final = (1e-30, 1e30)
+"""Of fluxes, irradiances and radiances [W, …]: their squares and shares must be numbers too."""
 
 MIN_SIZE_M: Final = 1e-9
 """No size may be smaller: geometrical optics ended long before a nanometre."""
@@ -170,6 +175,9 @@ Number = Annotated[float, Strict(), AllowInfNan(False)]
 
 Positive = Annotated[Number, Field(gt=0)]
 NonNegative = Annotated[Number, Field(ge=0)]
+Light = Annotated[Number, Field(ge=LIGHT_RANGE[0], le=LIGHT_RANGE[1])]
+"""A flux, an irradiance or a radiance."""
+
 Count = Annotated[int, Strict(), Field(gt=0)]
 Degrees = Number
 

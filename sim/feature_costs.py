@@ -142,7 +142,7 @@ class _Bench:
         camera = compile_camera(compiled, self.scene.camera, small)
         survey = survey_view(compiled, camera, float(edges_nm.mean()))
         # From the pixels of the whole film: as many photons as in a rendering lie in a disc.
-        radius = choose_gather_radius(survey, small, self.settings)
+        radius = choose_gather_radius(compiled, survey, small, self.settings)
         width = radius.median if self.settings.radius else scale * radius.median
         receivers = compile_receivers(compiled, lamps, edges_nm)
         maps = build_photon_maps(

@@ -13,7 +13,6 @@ from sim.geometry.lens import intersect_lens, lens_normal
 from sim.geometry.mesh import intersect_mesh, mesh_normal
 from sim.geometry.polyhedron import intersect_polyhedron
 from sim.geometry.sphere import intersect_sphere
-from sim.optics.dielectric import renormalize
 from sim.scene_structs import make_scene_structs
 
 __all__ = ["make_intersect"]
@@ -61,9 +60,11 @@ def make_intersect(precision: str, features: Features):
                     hit.t = t
                     hit.prim = sphere.prim
                     hit.face = 0
-                    hit.normal = renormalize(
-                        (local + ray.direction * t) * (real(1.0) / sphere.radius)
-                    )
+                    # From afar the point is off the sphere by ε of the way, and can be anywhere.
+                    outward = local + ray.direction * t
+                    if wp.dot(outward, outward) == real(0.0):
+                        outward = -ray.direction
+                    hit.normal = wp.normalize(outward)
                 i += 1
         if wp.static(features.flats):
             i = int(0)

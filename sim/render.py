@@ -69,6 +69,7 @@ def render(
 
     Raises:
         scenes.SceneError: the scene lacks something that a picture needs.
+        SettingsError: the gather radius, or the precision, does not do for this scene.
         DeviceError: the device does not exist.
         KeyboardInterrupt: on Ctrl-C, within a fraction of a second.
     """
@@ -87,9 +88,7 @@ def render(
         survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
         lamps = compile_lamps_for(compiled, survey, plan)
         receivers = compile_receivers(compiled, lamps, edges_nm)
-        radius = choose_gather_radius(
-            survey, scene.film, plan, unseen=_radius_unseen(compiled)
-        )
+        radius = choose_gather_radius(compiled, survey, scene.film, plan)
         film = create_film(
             edges_nm, len(lamps.spectra), device, radius_scale=radius.scale, passes=plan.passes
         )
@@ -109,8 +108,12 @@ def render(
                 break
     energy, closed = EnergyBooks.mean(books), plan.closed(film.passes)
     origin = Origin(scene=scene, settings=closed, energy=energy)
+    radiance = film.radiance()
+    if not np.all(np.isfinite(radiance)):
+        allowed = "'float64': the radiance of this scene is beyond the numbers of float32"
+        raise SettingsError("precision", plan.precision, allowed)
     return Picture(
-        spectral_radiance=film.radiance(),
+        spectral_radiance=radiance,
         standard_error=film.standard_error(),
         accuracy=film.accuracy(),
         edges_nm=edges_nm,
@@ -168,9 +171,6 @@ def _refuse_endless_light(scene: scenes.Scene, plan: ResolvedSettings) -> None:
             raise SettingsError("bounces", plan.bounces, f"0, {reason}")
 
 
-def _radius_unseen(compiled: CompiledScene) -> float | None:
-    """A radius for a picture of lamps alone, on which nothing depends as far as one can tell."""
-    return 0.01 * compiled.bounding_radius if compiled.features.visible_lamps else None
 
 
 _Pass = tuple[PhotonMaps, EnergyBooks, PassCrossings | None]

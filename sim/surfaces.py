@@ -13,11 +13,11 @@ import warp as wp
 from sim.features import Features
 from sim.optics.conductor import conductor_reflectance
 from sim.optics.dielectric import (
+    cos2_theta_t,
     fresnel_reflectance,
     reflect,
     refract,
     schlick_reflectance,
-    sin2_theta_t,
 )
 from sim.optics.polarisation import (
     conductor_matrix,
@@ -64,12 +64,12 @@ def make_surfaces(precision: str, features: Features) -> SimpleNamespace:
         return vec4(of_s + of_p, of_s - of_p, r_s * r_p, real(0.0)), together
 
     @wp.func
-    def all_reflected(cos_theta_i: real, sin2_t: real, eta: real):
+    def all_reflected(cos_theta_i: real, cos2_t: real, eta: real):
         return averaged(real(1.0))
 
     @wp.func
-    def all_retarded(cos_theta_i: real, sin2_t: real, eta: real):
-        cosine, sine = total_reflection_phase(cos_theta_i, sin2_t, eta)
+    def all_retarded(cos_theta_i: real, cos2_t: real, eta: real):
+        cosine, sine = total_reflection_phase(cos_theta_i, cos2_t, eta)
         return vec4(real(1.0), real(0.0), cosine, sine)
 
     partly = s_and_p_reflected if features.polarises else share_reflected
@@ -84,10 +84,10 @@ def make_surfaces(precision: str, features: Features) -> SimpleNamespace:
         if eta == real(1.0):
             # Exactly, at any angle.
             return 0, averaged(real(0.0)), real(1.0), reflected, direction
-        sin2_t = sin2_theta_t(cos_theta_i, eta)
-        if sin2_t >= real(1.0):
-            return 1, totally(cos_theta_i, sin2_t, eta), real(0.0), reflected, reflected
-        cos_theta_t = wp.sqrt(real(1.0) - sin2_t)
+        cos2_t = cos2_theta_t(cos_theta_i, eta)
+        if cos2_t <= real(0.0):
+            return 1, totally(cos_theta_i, cos2_t, eta), real(0.0), reflected, reflected
+        cos_theta_t = wp.sqrt(cos2_t)
         matrix, together = partly(cos_theta_i, cos_theta_t, eta)
         refracted = refract(direction, normal, cos_theta_i, cos_theta_t, eta)
         return 0, matrix, together, reflected, refracted

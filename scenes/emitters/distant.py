@@ -12,7 +12,7 @@ from typing import Literal
 from pydantic import Field
 
 from scenes.emitters.emitter import Emitter, Glowing
-from scenes.fields import Degrees, Direction, Positive
+from scenes.fields import Degrees, Direction, Light
 
 __all__ = ["DistantEmitter", "Environment", "Sun"]
 
@@ -41,7 +41,7 @@ class Sun(DistantEmitter):
 
     type: Literal["sun"] = Field(default="sun", description="disk in the sky")
     direction: Direction = Field(description="where its light goes")
-    irradiance: Positive = Field(
+    irradiance: Light = Field(
         description="irradiance over the whole spectrum of a surface that faces the sun [W m⁻²]"
     )
     half_angle_deg: Degrees = Field(
@@ -72,7 +72,7 @@ class Environment(DistantEmitter):
     """All around the scene, evenly bright in every direction; infinitely far away."""
 
     type: Literal["environment"] = Field(default="environment", description="evenly bright sky")
-    radiance: Positive = Field(
+    radiance: Light = Field(
         description="radiance over the whole spectrum, in every direction [W m⁻² sr⁻¹]"
     )
 

@@ -7,7 +7,7 @@ from pydantic import Field, StrictBool, model_validator
 
 from scenes.emission import SpectrumSpec, resolve_spectrum
 from scenes.errors import Problem, refusal
-from scenes.fields import Positive
+from scenes.fields import Light
 from scenes.model import SceneModel
 from scenes.polarisation import Polarisation
 from spectra import EmissionSpectrum
@@ -51,7 +51,7 @@ class Emitter(SceneModel):
 class LocalEmitter(Emitter):
     """A source of light that is somewhere in the scene."""
 
-    flux: Positive = Field(description="radiant flux over the whole spectrum [W]")
+    flux: Light = Field(description="radiant flux over the whole spectrum [W]")
 
 
 class Glowing(SceneModel):

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from scenes.fields import MAX_LENGTH_M, MIN_SIZE_M
 from scenes.shapes.surface import Surface
 
 __all__ = ["MAX_TRIANGLES", "MESH_FORMATS", "NormalsChoice", "read_surface"]
@@ -55,6 +56,7 @@ def _read(
         raise ValueError(f"it holds {len(corners)} triangles; allowed: at most {MAX_TRIANGLES}")
     if not np.isfinite(corners).all():
         raise ValueError("it holds coordinates that are not finite numbers")
+    _require_size(corners, unit)
     if normals != "file":
         corner_normals = None
     if turned:
@@ -62,6 +64,22 @@ def _read(
         corner_normals = None if corner_normals is None else corner_normals[:, ::-1]
     surface = _joined(corners * unit, corner_normals)
     return surface.smoothed() if normals == "smooth" else surface
+
+
+def _require_size(corners: NDArray[np.float64], unit: float) -> None:
+    """Refuse what is larger or smaller than a length in a scene may be.
+
+    Raises:
+        ValueError: it is.
+    """
+    farthest = float(np.abs(corners).max()) * unit
+    if farthest > MAX_LENGTH_M:
+        raise ValueError(
+            f"it reaches {farthest:.6g} m from its origin; allowed: at most {MAX_LENGTH_M:g} m"
+        )
+    width = float(np.ptp(corners.reshape(-1, 3), axis=0).max()) * unit
+    if width < MIN_SIZE_M:
+        raise ValueError(f"it is {width:.6g} m wide; allowed: at least {MIN_SIZE_M:g} m")
 
 
 def _corners(

@@ -25,6 +25,9 @@ BOX = wp.constant(0)
 TENT = wp.constant(1)
 GAUSSIAN = wp.constant(2)
 
+LENS_POINTS = 4
+"""Points of the lens that a pixel looks through in a pass; a divisor of its shadow rays."""
+
 TWO_PI = wp.constant(6.283185307179586)
 
 
@@ -43,6 +46,7 @@ def make_camera_struct(precision: str) -> Any:
         lens_right: vec3  # to the aperture's edge
         lens_up: vec3
         sharp_distance: real
+        lens_points: int
         filter: int  # BOX, TENT or GAUSSIAN
         filter_reach: real  # pixels
         filter_sigma: real
@@ -125,6 +129,7 @@ def compile_camera(compiled: CompiledScene, camera: scenes.Camera, film: scenes.
     struct.lens_right = camera.lens_radius * right
     struct.lens_up = camera.lens_radius * up
     struct.sharp_distance = camera.sharp_distance
+    struct.lens_points = LENS_POINTS if camera.lens_radius > 0.0 else 1
     _fill_filter(struct, film.filter)
     struct.width = film.width
     struct.height = film.height

@@ -31,11 +31,8 @@ from sim.transport import make_transport
 
 __all__ = ["make_film_struct", "make_render_camera"]
 
-SHADOW_RAYS = 4
-"""To each lamp, of a path for all bands; the many paths for single bands cast one each."""
-
-LENS_POINTS = 4
-"""Paths for all bands, of a camera with a lens; they share the shadow rays."""
+SHADOW_RAYS = wp.constant(4)
+"""To each lamp, of the paths for all bands together; the many for single bands cast one each."""
 
 
 @functools.cache
@@ -74,7 +71,6 @@ def make_render_camera(precision: str, features: Features) -> Any:
     camera_type, film_type = make_camera_struct(precision), make_film_struct()
     seeing = make_camera_functions(precision, features)
     look_through, place_in_pixel = seeing.look_through, seeing.place_in_pixel
-    lens_points = LENS_POINTS if features.thin_lens else 1
     follow = make_follow_sight(precision, features)
 
     @wp.func
@@ -102,15 +98,18 @@ def make_render_camera(precision: str, features: Features) -> Any:
         sight.row = pixel
         sight.radius_scale = real(film.radius_scale[pixel])
         sight.band = ALL_BANDS
-        sight.weight = real(wp.static(1.0 / lens_points)) / real(film.turns)
+        points = int(1)
+        if wp.static(features.thin_lens):
+            points = camera.lens_points
+        sight.weight = real(1.0) / real(points * film.turns)
         half_range_nm = real(0.5) * receivers.band_width_nm * real(receivers.bands)
         sight.wavelength_nm = receivers.first_edge_nm + half_range_nm
         sight.lamp_key = key + wp.uint64(3)
-        sight.shadow_rays = wp.static(SHADOW_RAYS // lens_points)
-        first_point = film.turn * wp.static(lens_points)
+        sight.shadow_rays = SHADOW_RAYS // points
+        first_point = film.turn * points
         dispersing = int(0)  # points of the lens behind which there is dispersion, a bit each
         point = int(0)
-        while point < wp.static(lens_points):
+        while point < points:
             sight.sample = first_point + point
             sight.key = hash64(key + wp.uint64(2), wp.uint64(sight.sample))
             ray = ray_through(camera, pixel, x, y, key, sight.sample)
@@ -126,7 +125,7 @@ def make_render_camera(precision: str, features: Features) -> Any:
                 sight.band = (int(key >> wp.uint64(40)) + film.turn) % film.turns
                 point = sight.deal
                 while sight.band < receivers.bands:
-                    point = (point + 1) % wp.static(lens_points)
+                    point = (point + 1) % points
                     if (dispersing >> point) & 1 == 1:
                         offset_nm = receivers.band_width_nm * (real(sight.band) + inside_band)
                         sight.wavelength_nm = receivers.first_edge_nm + offset_nm

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.errors import CapacityError
 from sim.image.exr_layout import (
     ACCURACY_CHANNELS,
     ATTRIBUTE_PREFIX,
@@ -108,7 +109,14 @@ def _channels(picture: Picture) -> dict[str, NDArray[np.float32]]:
 
 
 def exr_plane(values: NDArray[np.float64]) -> NDArray[np.float32]:
-    """One channel, contiguous: OpenEXR writes wrong pixels from other arrays, silently."""
+    """One channel, contiguous: OpenEXR writes wrong pixels from other arrays, silently.
+
+    Raises:
+        CapacityError: a value is beyond the numbers of the file, which are float32.
+    """
+    largest = float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
+    if largest > float(np.finfo(np.float32).max):
+        raise CapacityError(f"a value of {largest:.3g} does not fit into an EXR file: at most 3e38")
     return np.ascontiguousarray(values, dtype=np.float32)
 
 

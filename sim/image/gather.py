@@ -117,7 +117,8 @@ def make_kernel_integral(precision: str, features: Features) -> object:
             rho = wp.min(reach(scene, met, wp.cos(phi), wp.sin(phi), radius), radius)
             x = rho * rho / (radius * radius)
             total += (x - real(0.5) * x * x) / real(PI) * step
-        return wp.max(total, real(1e-3))
+        # A disc as wide as the scene may hold a receiver of a millionth of its width.
+        return wp.max(total, real(1e-12))
 
     return kernel_integral
 

@@ -21,6 +21,7 @@ import numpy.typing as npt
 import scenes
 from sim.errors import SettingsError
 from sim.image.survey import Survey
+from sim.scene_data import CompiledScene
 from sim.settings import ResolvedSettings
 
 __all__ = ["GatherRadius", "choose_gather_radius", "radius_shrinkage"]
@@ -56,31 +57,53 @@ def radius_shrinkage(pass_index: int, alpha: float) -> float:
 
 
 def choose_gather_radius(
-    survey: Survey, film: scenes.Film, plan: ResolvedSettings, *, unseen: float | None = None
+    compiled: CompiledScene, survey: Survey, film: scenes.Film, plan: ResolvedSettings
 ) -> GatherRadius:
     """The radius that was asked for, or each pixel's own.
 
     Args:
+        compiled: the scene.
         survey: what the camera sees.
         film: how many pixels there are.
         plan: with the radius in metres, or in pixels.
-        unseen: the radius if no pixel sees a diffuse surface, in a picture that can do without.
 
     Raises:
-        SettingsError: no pixel sees a diffuse surface to measure the radius on.
+        SettingsError: the scene's coordinates cannot resolve the radius that was asked for, or the
+            scene is smaller; or there is nothing to measure one on.
     """
-    everywhere = np.ones((film.height, film.width), dtype=np.float32)
+    size = 2.0 * compiled.bounding_radius
+    least = size * float(np.finfo(plan.precision).eps)
+    endless = any(isinstance(one.shape, scenes.Plane) for one in compiled.scene.objects)
+    most = np.inf if endless else size
+    scale = np.ones((film.height, film.width), dtype=np.float32)
     if plan.radius is not None:
-        return GatherRadius(plan.radius, everywhere)
-    if len(survey.widths) == 0:
-        if unseen is not None:
-            return GatherRadius(unseen, everywhere)
-        raise SettingsError(
-            "radius", None, "a radius in metres, since the camera sees no diffuse surface"
-        )
-    median = float(np.median(survey.widths))
+        if not least <= plan.radius <= most:
+            allowed = f"at least {least:.2g} m, which {plan.precision} resolves here"
+            if not endless:
+                allowed += f", at most {most:.3g} m, the scene's size"
+            raise SettingsError("radius", plan.radius, allowed)
+        return GatherRadius(plan.radius, scale)
+    widths = survey.widths[survey.widths > 0.0]
+    if len(widths) == 0:
+        return GatherRadius(_radius_unseen(compiled, survey), scale)
+    median = float(np.median(widths))
     relative = np.clip(survey.width_grid / median, NARROWEST, WIDEST)
-    return GatherRadius(plan.radius_pixels * median, _of_pixels(relative, film))
+    radius = float(np.clip(plan.radius_pixels * median, least, most))
+    return GatherRadius(radius, _of_pixels(relative, film))
+
+
+def _radius_unseen(compiled: CompiledScene, survey: Survey) -> float:
+    """A radius for a picture of lamps alone, on which nothing depends as far as one can tell [m].
+
+    Raises:
+        SettingsError: there are no lamps to see.
+    """
+    if compiled.features.visible_lamps:
+        return 0.01 * compiled.bounding_radius
+    reason = "the camera stands on all that it sees"
+    if len(survey.widths) == 0:
+        reason = "the camera sees no diffuse surface"
+    raise SettingsError("radius", None, f"a radius in metres, since {reason}")
 
 
 def _of_pixels(relative: FloatArray, film: scenes.Film) -> npt.NDArray[np.float32]:

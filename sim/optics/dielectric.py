@@ -15,23 +15,28 @@ from typing import Any
 import warp as wp
 
 __all__ = [
+    "cos2_theta_t",
     "fresnel_reflectance",
     "reflect",
     "refract",
     "renormalize",
     "schlick_reflectance",
-    "sin2_theta_t",
 ]
 
 
 @wp.func
-def sin2_theta_t(cos_theta_i: Any, eta: Any):
-    """Squared sine of the transmitted angle, sin²θₜ = η² (1 − cos²θᵢ); ≥ 1 reflects totally.
+def cos2_theta_t(cos_theta_i: Any, eta: Any):
+    """Squared cosine of the transmitted angle, 1 − η² sin²θᵢ; ≤ 0 reflects totally.
 
-    (1 − c)(1 + c) keeps the digits that 1 − c² loses near normal incidence.
+    Towards grazing it is (1 − η)(1 + η) + η² cos²θᵢ, which keeps the digits of small cosines where
+    the indices nearly agree. Else (1 − c)(1 + c) keeps those that 1 − c² loses.
     """
     one = type(eta)(1.0)
-    return eta * eta * (one - cos_theta_i) * (one + cos_theta_i)
+    from_i = eta * cos_theta_i
+    square = (one - eta) * (one + eta) + from_i * from_i
+    if cos_theta_i * cos_theta_i > type(eta)(0.5):
+        square = one - eta * eta * (one - cos_theta_i) * (one + cos_theta_i)
+    return square
 
 
 @wp.func

@@ -62,14 +62,14 @@ def fresnel_amplitudes(cos_theta_i: Any, cos_theta_t: Any, eta: Any):
 
 
 @wp.func
-def total_reflection_phase(cos_theta_i: Any, sin2_theta_t: Any, eta: Any):
-    """Cosine and sine of the phase δ of s over p that total reflection adds, sin²θₜ ≥ 1.
+def total_reflection_phase(cos_theta_i: Any, cos2_theta_t: Any, eta: Any):
+    """Cosine and sine of the phase δ of s over p that total reflection adds, cos²θₜ ≤ 0.
 
     tan(δ/2) = cosθᵢ √(sin²θᵢ − 1/η²)/sin²θᵢ, η = η_i/η_t (Born & Wolf 1999, §1.5.4 eq. 61).
     """
     one = type(eta)(1.0)
     sin2_theta_i = (one - cos_theta_i) * (one + cos_theta_i)
-    tangent = cos_theta_i * wp.sqrt(sin2_theta_t - one) / (eta * sin2_theta_i)
+    tangent = cos_theta_i * wp.sqrt(-cos2_theta_t) / (eta * sin2_theta_i)
     scale = one / (one + tangent * tangent)
     return (one - tangent * tangent) * scale, (tangent + tangent) * scale
 

@@ -1,7 +1,7 @@
 """One pass of photons: traced over ranges on every core, and stored where they arrive."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 import warp as wp
 
+from sim.errors import SettingsError
 from sim.launch import cut_ranges, launch_ranges
 from sim.photons.energy import BOOK_COLUMNS, EnergyBooks
-from sim.photons.lamps import Lamps
+from sim.photons.lamps import Lamps, Stream
 from sim.photons.photon_batch import PhotonBatch, allocate_photons
 from sim.photons.photon_path import COLOURS, make_trace_photons
 from sim.photons.photon_structs import make_photon_structs
@@ -44,6 +45,9 @@ _COUNTERS = 3
 _SLOTS_PER_PHOTON = 6 * int(COLOURS)
 """Room for deposits: on the CPU it takes address space, not memory, until it is written to. A
 pass that needs more is traced again with room for exactly what its kernels counted."""
+
+_MAX_SLOTS = 2**31 - 1
+"""Kernels count slots in 32 bits."""
 
 
 @dataclass
@@ -91,27 +95,21 @@ def trace_photons(
         range_size: photons a launch.
         branch_threshold: a branch below this fraction of its photon's flux plays roulette for it.
         by_band: keep energy books of each band of the film, too.
+
+    Raises:
+        SettingsError: the pass leaves more photons than can be stored.
     """
     lamps.seed(compiled.device, seed, pass_index)
-    shares: list[_Share] = []
-    slot = 0
-    for row, stream in enumerate(lamps.streams):
-        for start, count in cut_ranges(stream.photons, range_size):
-            room = count * _SLOTS_PER_PHOTON
-            shares.append(_Share(row, start, count, slot, room))
-            slot += room
+    shares, slots = _share_out(lamps.streams, range_size)
     run = _Run(
         compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, sensors,
         bounces, stop, branch_threshold, compiled.scene.film.bands if by_band else 0,
     )
-    photons, counts, books = run.trace(shares, slot, on_done)
+    photons, counts, books = run.trace(shares, slots, on_done)
     if any(counts[i].max() > share.slot_count for i, share in enumerate(shares)):
         # Their kernels counted what did not fit: now the need of every range is known exactly.
-        slot = 0
-        for share, count in zip(shares, counts, strict=True):
-            share.first_slot, share.slot_count = slot, int(count.max())
-            slot += share.slot_count
-        photons, counts, books = run.trace(shares, slot, None)
+        slots = _make_room(shares, counts)
+        photons, counts, books = run.trace(shares, slots, None)
     crossings = None
     if sensors is not None:
         crossings = collect_crossings(
@@ -124,6 +122,35 @@ def trace_photons(
         photons, _slots(shares, stored), EnergyBooks.from_rows(books, band_books), compiled.origin,
         stored, crossings,
     )
+
+
+def _share_out(streams: Sequence[Stream], range_size: int) -> tuple[list[_Share], int]:
+    """The ranges of all streams, with slots as there is room for; and how many slots in all."""
+    photons = sum(stream.photons for stream in streams)
+    a_photon = min(_SLOTS_PER_PHOTON, _MAX_SLOTS // max(1, photons))
+    shares: list[_Share] = []
+    slot = 0
+    for row, stream in enumerate(streams):
+        for start, count in cut_ranges(stream.photons, range_size):
+            room = count * a_photon
+            shares.append(_Share(row, start, count, slot, room))
+            slot += room
+    return shares, slot
+
+
+def _make_room(shares: list[_Share], counts: npt.NDArray[np.int32]) -> int:
+    """Give every range as many slots as it has counted; returns how many there are in all."""
+    needed = [int(count.max()) for count in counts]
+    if sum(needed) > _MAX_SLOTS:
+        photons = sum(share.count for share in shares)
+        fewer = photons * _MAX_SLOTS // sum(needed)
+        allowed = f"at most about {fewer}: a pass stores up to {_MAX_SLOTS} photons"
+        raise SettingsError("photons", photons, allowed)
+    slot = 0
+    for share, room in zip(shares, needed, strict=True):
+        share.first_slot, share.slot_count = slot, room
+        slot += room
+    return slot
 
 
 def _slots(shares: list[_Share], counts: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:

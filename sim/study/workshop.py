@@ -115,7 +115,8 @@ class Workshop:
         Raises:
             SettingsError: no pixel sees a diffuse surface to measure the radius on.
         """
-        return choose_gather_radius(self.bench(setup).survey, setup.scene.film, setup.settings)
+        bench = self.bench(setup)
+        return choose_gather_radius(bench.compiled, bench.survey, setup.scene.film, setup.settings)
 
     def lamps(self, setup: Setup, seed: int) -> Lamps:
         """The lamps of one run: as a rendering makes them, with a pilot of its own."""

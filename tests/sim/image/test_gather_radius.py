@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 import scenes
+from sim.device import start_device
 from sim.errors import SettingsError
 from sim.image.gather_radius import NARROWEST, WIDEST, choose_gather_radius, radius_shrinkage
 from sim.image.survey import Survey
+from sim.scene_data import compile_scene
 from sim.settings import RenderSettings
 
 FILM = scenes.Film(width=48, height=32)
@@ -21,9 +23,10 @@ def make_survey(grid):
     )
 
 
-def choose(grid, small_scene, **settings):
-    plan = RenderSettings(**settings).resolved(small_scene)
-    return choose_gather_radius(make_survey(grid), FILM, plan)
+def choose(grid, scene, **settings):
+    plan = RenderSettings(**settings).resolved(scene)
+    compiled = compile_scene(scene, device=start_device("cpu"))
+    return choose_gather_radius(compiled, make_survey(grid), FILM, plan)
 
 
 def test_the_median_pixel_has_two_pixel_widths_or_as_many_as_are_asked_for(small_scene):

@@ -13,7 +13,7 @@ import warp as wp
 
 from sim.analytic_polarisation import fresnel_amplitudes as expected_amplitudes
 from sim.device import start_device
-from sim.optics.dielectric import reflect, refract, sin2_theta_t
+from sim.optics.dielectric import cos2_theta_t, reflect, refract
 from sim.optics.polarisation import (
     apply_surface,
     conductor_matrix,
@@ -60,13 +60,13 @@ def make_probes(precision):
         cosine = real(0.0)
         sine = real(0.0)
         passed_cosine = real(0.0)
-        sin2 = sin2_theta_t(cos_theta_i, eta)
+        cos2 = cos2_theta_t(cos_theta_i, eta)
         if k > real(0.0):
             mean, half, cosine, sine = conductor_matrix(cos_theta_i, eta, k)
-        elif eta != real(1.0) and sin2 >= real(1.0):
-            cosine, sine = total_reflection_phase(cos_theta_i, sin2, eta)
+        elif eta != real(1.0) and cos2 <= real(0.0):
+            cosine, sine = total_reflection_phase(cos_theta_i, cos2, eta)
         else:
-            cos_theta_t = wp.sqrt(wp.max(real(1.0) - sin2, real(0.0)))
+            cos_theta_t = wp.sqrt(wp.max(cos2, real(0.0)))
             r_s, r_p, together = fresnel_amplitudes(cos_theta_i, cos_theta_t, eta)
             mean = real(0.5) * (r_s * r_s + r_p * r_p)
             half = real(0.5) * (r_s * r_s - r_p * r_p)
