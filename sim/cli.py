@@ -1,8 +1,9 @@
 """The command ``nephroid``: reads its arguments, runs one command, turns errors into one line.
 
 Exit status: 0 when it worked, 2 for bad input or an output that cannot be written, 1 for a run
-that failed after it had done work, or a check, 130 after Ctrl-C or SIGTERM. Each command is a module of `sim.commands`, and those load nothing heavy before their
-arguments are known to be good: the help appears at once.
+that failed after it had done work and for a check that failed, 130 after Ctrl-C or SIGTERM. Each
+command is a module of `sim.commands`, and those load nothing heavy before their arguments are
+known to be good: the help appears at once.
 """
 
 from __future__ import annotations
