@@ -13,6 +13,7 @@ import scenes
 from sim.canary import choose_kernels
 from sim.device import start_device
 from sim.launch import load_kernels
+from sim.memory.estimate import require_memory
 from sim.photons.energy import EnergyBooks
 from sim.photons.lamps import compile_lamps
 from sim.photons.photon_path import make_trace_photons
@@ -95,6 +96,7 @@ def measure(
         load_kernels([kernel], device=device, threads=plan.threads)
         edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
         lamps = compile_lamps(compiled, edges_nm, plan.photons)
+        require_memory(compiled, lamps, plan, pictured=False)
         bank = compile_sensors(compiled)
         assert bank is not None  # require_measurable has seen to it
     tally, rule = SensorTally(bank), StopRule(plan, watch)

@@ -28,6 +28,7 @@ from sim.image.picture import Picture
 from sim.image.sight import compose_lights
 from sim.image.survey import Survey, make_measure_footprints, survey_view
 from sim.launch import load_kernels
+from sim.memory.estimate import require_memory
 from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
@@ -94,6 +95,7 @@ def render(
         survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
         lamps = compile_lamps_for(compiled, survey, plan)
         receivers = compile_receivers(compiled, lamps, edges_nm)
+        require_memory(compiled, lamps, plan, pictured=True)
         radius = choose_gather_radius(
             survey, scene.film, plan, unseen=_radius_unseen(compiled)
         )
