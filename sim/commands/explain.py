@@ -3,7 +3,8 @@
 Kernels are compiled for what the scene requires and no more. For each feature: whether it is on,
 the bound on the error that leaving it out can cause, the time of the kernel with it over that
 without it, and why. A feature is left out where its bound is 0, or while the bounds of all that is
-left out add up to no more than the tolerance.
+left out add up to no more than the tolerance. Last, the memory that rendering it takes, of which
+a few photons tell: a run that has less refuses to begin.
 """
 
 from __future__ import annotations
@@ -69,6 +70,9 @@ def run(arguments: argparse.Namespace) -> None:
     print(f"time: of the kernel with the feature ÷ without it, {where}")
     if costs is not None:
         _print_full_kernels(costs)
+    memory = run_interruptibly(functools.partial(_memory_text, scene, resolved))
+    if memory is not None:
+        print(memory)
     if arguments.check:
         _print_canary(run_interruptibly(functools.partial(_checked, scene, resolved)))
 
@@ -86,6 +90,22 @@ def _checked(scene: Scene, settings: ResolvedSettings) -> CanaryReport | None:
 
     device = start_device(settings.device)
     return choose_kernels(scene, settings, device=device, check=True).canary
+
+
+def _memory_text(scene: Scene, settings: ResolvedSettings) -> str | None:
+    """What a run would take, and what there is; None of a scene that cannot be rendered."""
+    from scenes import SceneError
+    from sim.memory.available import available_memory
+    from sim.memory.estimate import size_text
+    from sim.memory.prospect import foresee_memory
+
+    try:
+        estimate = foresee_memory(scene, settings, pictured=scene.camera is not None)
+    except SceneError:
+        return None
+    available = available_memory()
+    there = "" if available is None else f"; {size_text(available)} are there"
+    return f"memory: a run takes about {estimate}{there}"
 
 
 def _print_table(plan: FeaturePlan, costs: dict[str, float] | None) -> None:

@@ -19,7 +19,7 @@ from sim.scene_data import CompiledScene
 from sim.sensors.sensor_bank import compile_sensors
 from sim.settings import ResolvedSettings
 
-__all__ = ["MemoryEstimate", "estimate_memory", "require_memory"]
+__all__ = ["MemoryEstimate", "estimate_memory", "require_memory", "size_text"]
 
 PROBE = 4000
 """Photons that tell how many a pass stores: their number is known to a few per cent."""
@@ -65,13 +65,13 @@ class MemoryEstimate:
 
     def __str__(self) -> str:
         parts = [
-            f"program {_size(self.program)}",
-            f"film {_size(self.film)}",
-            f"photons {_size(self.photons)} for {self.stored:.3g} that a pass stores",
+            f"program {size_text(self.program)}",
+            f"film {size_text(self.film)}",
+            f"photons {size_text(self.photons)} for {self.stored / 1e6:.3g} million that a pass stores",
         ]
         if self.sensors:
-            parts.append(f"sensors {_size(self.sensors)}")
-        return f"{_size(self.total)} ({', '.join(parts)})"
+            parts.append(f"sensors {size_text(self.sensors)}")
+        return f"{size_text(self.total)} ({', '.join(parts)})"
 
 
 def require_memory(
@@ -98,7 +98,7 @@ def require_memory(
     room = available + estimate.program
     if estimate.total > room:
         raise CapacityError(
-            f"this run needs about {estimate}, and {_size(room)} are there;"
+            f"this run needs about {estimate}, and {size_text(room)} are there;"
             f" {_advice(estimate, settings, room)}"
         )
 
@@ -193,6 +193,6 @@ def _sensor_bytes(scene: scenes.Scene, rays: float, rays_a_pass: float) -> float
     return total + _RAY_BYTES * min(rays, kept)
 
 
-def _size(count: float) -> str:
+def size_text(count: float) -> str:
     """Bytes in words: 660 MB, 4.2 GB."""
     return f"{count / 1e9:.3g} GB" if count >= 1e9 else f"{count / 1e6:.0f} MB"
