@@ -87,6 +87,8 @@ def measure(
     """
     scene.require_measurable()
     plan = (settings or RenderSettings()).resolved(scene)
+    if checkpoint is not None:
+        checkpoint.expect(fingerprint_of(scene, plan, pictured=False), plan.passes)
     watch = Stopwatch(plan, progress)
     with watch.timing("compile"):
         device = start_device(plan.device)
@@ -102,9 +104,7 @@ def measure(
     tally, rule = SensorTally(bank), StopRule(plan, watch)
     books: list[EnergyBooks] = []
     state = RunState(books, rule, watch, tally=tally)
-    first = 0
-    if checkpoint is not None:
-        first = checkpoint.begin(state, fingerprint_of(scene, plan, pictured=False))
+    first = 0 if checkpoint is None else checkpoint.begin(state)
     for pass_index in range(first, plan.passes):
         watch.pass_index = pass_index
         with watch.timing("trace photons"):

@@ -82,6 +82,8 @@ def render(
     """
     scene.require_renderable()
     plan = (settings or RenderSettings()).resolved(scene)
+    if checkpoint is not None:
+        checkpoint.expect(fingerprint_of(scene, plan, pictured=True), plan.passes)
     watch = Stopwatch(plan, progress)
     with watch.timing("compile"):
         device = start_device(plan.device)
@@ -108,9 +110,7 @@ def render(
     books: list[EnergyBooks] = []
     rule = StopRule(plan, watch)
     state = RunState(books, rule, watch, film=film, tally=tally)
-    first = 0
-    if checkpoint is not None:
-        first = checkpoint.begin(state, fingerprint_of(scene, plan, pictured=True))
+    first = 0 if checkpoint is None else checkpoint.begin(state)
     with closing(studio.photon_maps(first)) as photon_maps:
         for pass_index, (maps, pass_books, crossings) in enumerate(photon_maps, first):
             books.append(pass_books)

@@ -11,6 +11,7 @@ import numpy as np
 import scenes
 from sim.errors import CapacityError
 from sim.memory.available import available_memory, resident_memory
+from sim.memory.sizes import film_memory, size_text
 from sim.photons.lamps import Lamps
 from sim.photons.photon_maps import INDIRECT_KEPT
 from sim.photons.tracing import trace_photons
@@ -19,7 +20,7 @@ from sim.scene_data import CompiledScene
 from sim.sensors.sensor_bank import compile_sensors
 from sim.settings import ResolvedSettings
 
-__all__ = ["MemoryEstimate", "estimate_memory", "require_memory", "size_text"]
+__all__ = ["MemoryEstimate", "estimate_memory", "require_memory"]
 
 PROBE = 4000
 """Photons that tell how many a pass stores: their number is known to a few per cent."""
@@ -29,9 +30,6 @@ MANY_STORED = 50.0
 
 _GRID_BYTES = 20
 """Of a hash grid, for each photon: its cell, its number, and the like of both for sorting."""
-
-_FILM_SCRATCH = 13 * 8
-"""Of each pixel, while its accuracy is worked out."""
 
 _BIN_BYTES = 6 * 8
 """Of each bin of a sensor: mean, squares, a pass's flux, and what they are read out into."""
@@ -64,10 +62,11 @@ class MemoryEstimate:
         return self.program + self.film + self.photons + self.sensors
 
     def __str__(self) -> str:
+        stored = f"{self.stored / 1e6:.3g} million"
         parts = [
             f"program {size_text(self.program)}",
             f"film {size_text(self.film)}",
-            f"photons {size_text(self.photons)} for {self.stored / 1e6:.3g} million that a pass stores",
+            f"photons {size_text(self.photons)} for {stored} that a pass stores",
         ]
         if self.sensors:
             parts.append(f"sensors {size_text(self.sensors)}")
@@ -156,12 +155,7 @@ def _counted(
     crossings: float, pictured: bool,
 ) -> MemoryEstimate:
     """The sum, from how many photons a pass stores, and how many rays cross sensors in it."""
-    film = compiled.scene.film
-    pixels, bands = film.width * film.height, film.bands
-    lamps = len(compiled.scene.emitters)
-    # sim.image.film: sample, mean, squares, tally; in the end, the standard error.
-    sums = pixels * (8 * (3 * bands + lamps + 1 + 6) + _FILM_SCRATCH)
-    at_end = 8 * pixels * bands
+    sums, at_end = film_memory(compiled.scene)
     real = np.dtype(precision_types(compiled.precision).dtype).itemsize
     # sim.photons.photon_batch: position; direction, wavelength, flux, and three integers; slots.
     batch = 3 * real + 12 + 4 + 8 + 3 * 4 + 8
@@ -191,8 +185,3 @@ def _sensor_bytes(scene: scenes.Scene, rays: float, rays_a_pass: float) -> float
         else:
             kept += sensor.max_rays
     return total + _RAY_BYTES * min(rays, kept)
-
-
-def size_text(count: float) -> str:
-    """Bytes in words: 660 MB, 4.2 GB."""
-    return f"{count / 1e9:.3g} GB" if count >= 1e9 else f"{count / 1e6:.0f} MB"

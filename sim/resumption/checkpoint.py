@@ -82,6 +82,7 @@ class Checkpoint:
         self._cost_s = 0.0
         self._has_failed = False
         self._fingerprint: dict[str, Any] = {}
+        self._goes_on_from: StoredState | None = None
 
     def __enter__(self) -> Self:
         """Take the lock.
@@ -112,15 +113,12 @@ class Checkpoint:
                 self.path.unlink(missing_ok=True)
         self._run_lock.release()
 
-    def begin(self, state: RunState, fingerprint: dict[str, Any]) -> int:
-        """Bring a run that has yet to make its first pass to where the file's run was.
+    def expect(self, fingerprint: dict[str, Any], passes: int) -> None:
+        """Say what run is about to begin; call it before any long work.
 
         Args:
-            state: of the new run.
-            fingerprint: of the new run.
-
-        Returns:
-            The pass to make next; if there is none to make, as many as there shall be.
+            fingerprint: of the run.
+            passes: how many it will make, at most.
 
         Raises:
             CheckpointError: the file is of another run, or holds work that would be lost.
@@ -129,17 +127,33 @@ class Checkpoint:
         if not self._gate.is_open:
             raise RuntimeError("a Checkpoint is used in a `with` block")
         self._fingerprint = fingerprint
-        self._saved_at = time.perf_counter()
-        self._cost_s = sum(one.nbytes for one in state.arrays().values()) / _WRITING_RATE
         stored = None if self.resume is False else self._stored()
         if stored is None:
             if self.resume and not self.path.exists():
                 self._tell(f"nephroid: there is no checkpoint {str(self.path)!r}: starting anew")
-            return 0
-        if not self.resume:
+        elif not self.resume:
             self._refuse_to_forget(stored)
+        else:
+            self._refuse_other_run(stored, passes)
+            self._goes_on_from = stored
+
+    def begin(self, state: RunState) -> int:
+        """Bring a run that has yet to make its first pass to where the file's run was.
+
+        Args:
+            state: of the new run, which is the one that was expected.
+
+        Returns:
+            The pass to make next; if there is none to make, as many as there shall be.
+
+        Raises:
+            FileFormatError: the file is damaged.
+        """
+        self._saved_at = time.perf_counter()
+        self._cost_s = sum(one.nbytes for one in state.arrays().values()) / _WRITING_RATE
+        stored, self._goes_on_from = self._goes_on_from, None
+        if stored is None:
             return 0
-        self._refuse_other_run(stored, state)
         try:
             state.restore(stored.numbers, stored.arrays)
         except ValueError as error:
@@ -217,7 +231,7 @@ class Checkpoint:
             " (--no-resume) throws it away",
         )
 
-    def _refuse_other_run(self, stored: StoredState, state: RunState) -> None:
+    def _refuse_other_run(self, stored: StoredState, asked: int) -> None:
         differences = list_differences(stored.numbers.get("fingerprint"), self._fingerprint)
         if differences:
             raise CheckpointError(
@@ -226,7 +240,7 @@ class Checkpoint:
                 " it away",
                 tuple(differences),
             )
-        done, asked = stored.numbers["passes"], state.watch.settings.passes
+        done = stored.numbers["passes"]
         if done > asked:
             raise CheckpointError(
                 self.path,

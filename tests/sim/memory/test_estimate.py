@@ -39,7 +39,7 @@ def test_photons_that_do_not_fit_are_refused_and_fewer_that_do_are_named(small_s
     with pytest.raises(sim.CapacityError) as caught:
         sim.render(small_scene, sim.RenderSettings(photons=10_000_000, passes=2))
     text = str(caught.value)
-    assert re.search(r"needs about [\d.]+ GB \(program .*, film .*, photons .* for .* million", text)
+    assert re.search(r"needs about [\d.]+ GB \(program .*, film .*, photons .* million", text)
     photons, passes = map(int, re.search(r"lower photons to (\d+) \(and raise passes to (\d+)",
                                          text).groups())  # fmt: skip
     assert photons * passes == pytest.approx(2e7, rel=0.05)
@@ -68,6 +68,8 @@ def test_the_command_refuses_in_one_line(small_scene, memory, tmp_path, capfd, m
 def test_explain_tells_it(small_scene, tmp_path, capsys):
     (tmp_path / "bench.toml").write_text(small_scene.source_text, "utf-8")
     assert main(["explain", str(tmp_path / "bench.toml")]) == 0
+    assert "memory: the film takes 0 MB; " in capsys.readouterr().out
+    assert main(["explain", "--memory", str(tmp_path / "bench.toml")]) == 0
     assert re.search(r"^memory: a run takes about \d+ MB \(program .* are there$",
                      capsys.readouterr().out, re.MULTILINE)  # fmt: skip
 

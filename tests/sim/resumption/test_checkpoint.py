@@ -395,7 +395,8 @@ def test_writing_takes_two_per_cent_or_is_thirty_seconds_apart(monkeypatch, path
     monkeypatch.setattr(Checkpoint, "_write", write)
     with Checkpoint(path, resume=False) as checkpoint:
         run = Run(8)
-        checkpoint.begin(run, {})
+        checkpoint.expect({}, 6)
+        checkpoint.begin(run)
         while clock.now < 600.0:
             clock.now += 0.2
             checkpoint.offer(run)
@@ -412,7 +413,8 @@ def test_a_large_film_is_not_written_before_that_is_worth_it(monkeypatch, path):
     monkeypatch.setattr(Checkpoint, "_write", lambda self, state: writes.append(clock.now))
     with Checkpoint(path, resume=False) as checkpoint:
         run = Run(80_000_000)  # at 400 MB/s 0.2 s, which are 2 % of 10 s
-        checkpoint.begin(run, {})
+        checkpoint.expect({}, 6)
+        checkpoint.begin(run)
         while not writes:
             clock.now += 1.0
             checkpoint.offer(run)
