@@ -42,7 +42,7 @@ def kept_work(
         UnfinishedError: files could not be written after all the work, or memory ran out.
     """
     from sim.errors import OutputError, UnfinishedError
-    from sim.resumption.checkpoint import Checkpoint
+    from sim.resumption.checkpoint import LAST_WAIT_S, Checkpoint
 
     path = checkpoint_path(output)
     checkpoint = Checkpoint(path, resume=resume, target=output, tell=_tell)
@@ -50,10 +50,12 @@ def kept_work(
         try:
             yield checkpoint
         except KeyboardInterrupt:
+            checkpoint.settle(LAST_WAIT_S)
             if not checkpoint.passes:
                 raise
             raise KeyboardInterrupt(_how_to_go_on(checkpoint, words)) from None
         except OutputError as error:
+            checkpoint.settle()
             raise UnfinishedError(f"{error}{_kept(checkpoint, words)}") from error
         except (MemoryError, RuntimeError) as error:
             if not _is_lack_of_memory(error):

@@ -16,12 +16,13 @@ _SCRATCH = 13
 def film_memory(scene: Scene) -> tuple[int, int]:
     """What a film takes while it is exposed, and what comes on top in the end [bytes].
 
-    `sim.image.film` has of each pixel a sample (bands, lamps and the bias), mean and squares, and
-    a tally of six; in the end there is the standard error.
+    `sim.image.film` has of each pixel a sample (bands, lamps and the bias), mean and squares, a
+    tally of six, and half a number for its radius; in the end there is the standard error.
     """
     film, lamps = scene.film, len(scene.emitters)
     pixels = film.width * film.height
-    return 8 * pixels * (3 * film.bands + lamps + 1 + 6 + _SCRATCH), 8 * pixels * film.bands
+    exposed = 8 * (3 * film.bands + lamps + 1 + 6 + _SCRATCH) + 4
+    return pixels * exposed, 8 * pixels * film.bands
 
 
 def size_text(count: float) -> str:

@@ -35,8 +35,14 @@ COST_SHARE = 0.02
 WORTH_KEEPING_S = 60.0
 """A checkpoint of as much work is not thrown away unless one asks for that."""
 
-_WRITING_RATE = 4e8
-"""Bytes a second, before it is known."""
+MUCH_BYTES = 1 << 25
+"""So much is not waited for: a disk may take seconds, in which the next pass can be made."""
+
+LAST_WAIT_S = 0.5
+"""When a run is cut short, for what is on its way to the disk."""
+
+_WRITING_RATE = 8e8
+"""Bytes a second that are handed over, before it is known."""
 
 _log = logging.getLogger("nephroid")
 
@@ -83,6 +89,7 @@ class Checkpoint:
         self._has_failed = False
         self._fingerprint: dict[str, Any] = {}
         self._goes_on_from: StoredState | None = None
+        self._under_way: threading.Thread | None = None
 
     def __enter__(self) -> Self:
         """Take the lock.
@@ -106,6 +113,8 @@ class Checkpoint:
 
         A run that was left behind in another thread writes nothing from here on.
         """
+        if kind is not None:
+            self.settle(LAST_WAIT_S)
         self._gate.close()
         self._remove_temporaries()
         if kind is None:
@@ -172,6 +181,8 @@ class Checkpoint:
         Raises:
             KeyboardInterrupt: the block has been left meanwhile.
         """
+        if self._under_way is not None and self._under_way.is_alive():
+            return
         gap = min(LONGEST_GAP_S, self._cost_s / COST_SHARE)
         if time.perf_counter() - self._saved_at < gap:
             return
@@ -180,19 +191,52 @@ class Checkpoint:
             self._write(state)
         except OutputError as error:
             self._tell_of_failure(error)
-        else:
-            self.passes, self._has_failed = state.passes, False
         self._saved_at = time.perf_counter()
         self._cost_s = self._saved_at - start
 
+    def settle(self, seconds: float | None = None) -> None:
+        """Wait for what is on its way to the disk, at most so long."""
+        if self._under_way is not None:
+            self._under_way.join(seconds)
+
     def _write(self, state: RunState) -> None:
+        """Write the file; the disk is waited for in another thread if there is much to wait for.
+
+        The state itself is free to change once it has been handed over.
+        """
         numbers = {"fingerprint": self._fingerprint, **state.numbers()}
-        temporary = self._beside(f"-{os.urandom(6).hex()}.tmp")
-        with replacing(self.path, temporary=temporary, gate=self._gate) as file:
+        temporary, passes = self._beside(f"-{os.urandom(6).hex()}.tmp"), state.passes
+        with contextlib.ExitStack() as stack:
+            file = stack.enter_context(
+                replacing(self.path, temporary=temporary, gate=self._gate)
+            )
+            size = 0
             for piece in encode_state(numbers, state.arrays()):
                 if not self._gate.is_open:
                     raise KeyboardInterrupt
-                file.write(piece)
+                size += file.write(piece)
+            if size >= MUCH_BYTES:
+                to_end = stack.pop_all()
+                self._under_way = threading.Thread(
+                    target=self._end_elsewhere, args=(to_end, passes), daemon=True
+                )
+                self._under_way.start()
+                return
+        self._has_written(passes)
+
+    def _end_elsewhere(self, to_end: contextlib.ExitStack, passes: int) -> None:
+        """Wait for the disk, in a thread of its own."""
+        try:
+            to_end.close()
+        except OutputError as error:
+            self._tell_of_failure(error)
+        except KeyboardInterrupt:  # The block has been left: no file takes its name any more.
+            return
+        else:
+            self._has_written(passes)
+
+    def _has_written(self, passes: int) -> None:
+        self.passes, self._has_failed = passes, False
 
     def _tell_of_failure(self, error: OutputError) -> None:
         """Once, until it works again."""

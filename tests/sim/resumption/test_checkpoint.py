@@ -412,13 +412,71 @@ def test_a_large_film_is_not_written_before_that_is_worth_it(monkeypatch, path):
     monkeypatch.setattr(module, "time", clock)
     monkeypatch.setattr(Checkpoint, "_write", lambda self, state: writes.append(clock.now))
     with Checkpoint(path, resume=False) as checkpoint:
-        run = Run(80_000_000)  # at 400 MB/s 0.2 s, which are 2 % of 10 s
+        run = Run(160_000_000)  # at 800 MB/s 0.2 s, which are 2 % of 10 s
         checkpoint.expect({}, 6)
         checkpoint.begin(run)
         while not writes:
             clock.now += 1.0
             checkpoint.offer(run)
     assert writes == [10.0]
+
+
+def test_a_large_one_reaches_the_disk_while_the_run_goes_on(
+    bench, undisturbed, monkeypatch, path
+):
+    monkeypatch.setattr(module, "MUCH_BYTES", 0)
+    real, threads = os.fsync, []
+
+    def fsync(descriptor):
+        threads.append(threading.current_thread())
+        if len(threads) == 2:
+            raise OSError(28, "No space left on device")
+        real(descriptor)
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    told = []
+
+    def offer_and_wait(self, state, real=Checkpoint.offer):
+        real(self, state)
+        self.settle()
+
+    monkeypatch.setattr(Checkpoint, "offer", offer_and_wait)
+    settings = sim.RenderSettings(**SETTINGS)
+    run_until(
+        monkeypatch, path, 4, lambda one: sim.render(bench, settings, checkpoint=one),
+        tell=told.append,
+    )  # fmt: skip
+    assert len(threads) == 4
+    assert threading.main_thread() not in threads
+    assert len(told) == 1
+    assert "that of 1 pass is kept; going on" in told[0]
+    with Checkpoint(path, resume=True) as checkpoint:
+        picture = sim.render(bench, settings, checkpoint=checkpoint)
+    assert content(picture) == content(undisturbed)
+    assert os.listdir(path.parent) == []
+
+
+def test_one_that_is_on_its_way_when_the_block_is_left_does_not_arrive(
+    bench, monkeypatch, path
+):
+    monkeypatch.setattr(module, "MUCH_BYTES", 0)
+    monkeypatch.setattr(module, "LAST_WAIT_S", 0.01)
+    reached, go_on = threading.Event(), threading.Event()
+
+    def fsync(descriptor):
+        reached.set()
+        go_on.wait()
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    with pytest.raises(Killed), Checkpoint(path) as checkpoint:
+        sim.render(bench, sim.RenderSettings(**SETTINGS), checkpoint=checkpoint)
+        assert reached.is_set()
+        assert checkpoint.passes == 0
+        raise Killed
+    assert os.listdir(path.parent) == []
+    go_on.set()
+    checkpoint.settle()
+    assert os.listdir(path.parent) == []
 
 
 def test_it_is_used_in_a_block(bench, path):
