@@ -4,6 +4,9 @@ The EXR holds spectral radiance band by band, its standard error, linear RGB, an
 reproduces it. Of a scene without a camera only the sensors are written: irradiance as an EXR and as
 arrays (.npz), rays as arrays. Settings that are left out come from the scene's own [render] table,
 then from the program's defaults.
+
+While it runs, a checkpoint beside the EXR keeps what is done: after a crash, a kill or Ctrl-C the
+same command with --resume goes on from there, to the same files byte by byte.
 """
 
 from __future__ import annotations

@@ -110,7 +110,7 @@ def test_it_goes_on_again_and_again(bench, undisturbed, monkeypatch, path):
         assert content(sim.render(bench, settings, checkpoint=checkpoint)) == content(undisturbed)
 
 
-@pytest.mark.parametrize("passes", [1, 4])
+@pytest.mark.parametrize("passes", [1, 4, 6])
 def test_a_measurement_goes_on_bit_by_bit(bench, monkeypatch, path, passes):
     settings = sim.RenderSettings(**SETTINGS)
     whole = sim.measure(bench, settings)
@@ -477,6 +477,28 @@ def test_one_that_is_on_its_way_when_the_block_is_left_does_not_arrive(
     go_on.set()
     checkpoint.settle()
     assert os.listdir(path.parent) == []
+
+
+def test_leaving_the_block_waits_for_one_that_takes_its_name(bench, monkeypatch, path):
+    # Else it would appear after the run's checkpoint has been removed, or fail to.
+    monkeypatch.setattr(module, "MUCH_BYTES", 0)
+    real, reached, let_go = os.replace, threading.Event(), threading.Event()
+
+    def replace(*names):
+        reached.set()
+        let_go.wait(0.5)
+        real(*names)
+
+    monkeypatch.setattr(os, "replace", replace)
+    told = []
+    with Checkpoint(path, tell=told.append) as checkpoint:
+        sim.render(bench, sim.RenderSettings(**SETTINGS), checkpoint=checkpoint)
+        assert reached.wait(60)
+    assert os.listdir(path.parent) == []
+    let_go.set()
+    checkpoint.settle()
+    assert os.listdir(path.parent) == []
+    assert told == []
 
 
 def test_it_is_used_in_a_block(bench, path):
