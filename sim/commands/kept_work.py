@@ -79,9 +79,11 @@ def _kept(checkpoint: Checkpoint, words: Sequence[str]) -> str:
 
 def _how_to_go_on(checkpoint: Checkpoint, words: Sequence[str]) -> str:
     """What is kept, and the command that goes on from it."""
-    passes = f"{checkpoint.passes} pass{'' if checkpoint.passes == 1 else 'es'}"
+    from sim.resumption.work_text import passes_text
+
     again = [word for word in words if word not in ("--resume", "--no-resume")]
-    return f"{passes}; to go on:\n  {shlex.join(['nephroid', *again, '--resume'])}"
+    command = shlex.join(["nephroid", *again, "--resume"])
+    return f"{passes_text(checkpoint.passes)}; to go on:\n  {command}"
 
 
 @contextlib.contextmanager

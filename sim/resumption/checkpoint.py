@@ -20,9 +20,11 @@ from typing import Any, Self
 from sim.atomic_file import check_writable, replacing
 from sim.errors import CheckpointError, FileFormatError, OutputError
 from sim.resumption.fingerprint import list_differences
+from sim.resumption.gate import Gate
 from sim.resumption.run_lock import RunLock
 from sim.resumption.run_state import RunState
 from sim.resumption.state_file import StoredState, encode_state, read_state
+from sim.resumption.work_text import passes_text, work_text
 
 __all__ = ["Checkpoint"]
 
@@ -83,7 +85,7 @@ class Checkpoint:
         self.passes = 0
         self._tell = tell
         self._run_lock = RunLock(self._beside(".lock"), self.path if target is None else target)
-        self._gate = _Gate()
+        self._gate = Gate()
         self._saved_at = time.perf_counter()
         self._cost_s = 0.0
         self._has_failed = False
@@ -150,7 +152,7 @@ class Checkpoint:
         """Bring a run that has yet to make its first pass to where the file's run was.
 
         Args:
-            state: of the new run, which is the one that was expected.
+            state: of the run that was expected.
 
         Returns:
             The pass to make next; if there is none to make, as many as there shall be.
@@ -168,7 +170,7 @@ class Checkpoint:
         except ValueError as error:
             raise FileFormatError(self.path, str(error)) from None
         self.passes = state.passes
-        self._tell(f"nephroid: going on after {_work(stored)}, from {str(self.path)!r}")
+        self._tell(f"nephroid: going on after {work_text(stored)}, from {str(self.path)!r}")
         # The same question as after its last pass; perhaps another target, or less time.
         ended = state.passes > 0 and state.ends()
         return state.watch.settings.passes if ended else state.passes
@@ -206,11 +208,9 @@ class Checkpoint:
         """
         numbers = {"fingerprint": self._fingerprint, **state.numbers()}
         temporary, passes = self._beside(f"-{os.urandom(6).hex()}.tmp"), state.passes
+        size, whole = 0, replacing(self.path, temporary=temporary, gate=self._gate)
         with contextlib.ExitStack() as stack:
-            file = stack.enter_context(
-                replacing(self.path, temporary=temporary, gate=self._gate)
-            )
-            size = 0
+            file = stack.enter_context(whole)
             for piece in encode_state(numbers, state.arrays()):
                 if not self._gate.is_open:
                     raise KeyboardInterrupt
@@ -241,7 +241,9 @@ class Checkpoint:
     def _tell_of_failure(self, error: OutputError) -> None:
         """Once, until it works again."""
         if not self._has_failed:
-            kept = f"that of {_passes(self.passes)} is kept" if self.passes else "there is none yet"
+            kept = "there is none yet"
+            if self.passes:
+                kept = f"that of {passes_text(self.passes)} is kept"
             self._tell(f"nephroid: warning: no checkpoint: {error}; {kept}; going on")
         self._has_failed = True
 
@@ -251,7 +253,7 @@ class Checkpoint:
             return None
         try:
             stored = read_state(self.path)
-            _work(stored)
+            work_text(stored)
         except FileFormatError as error:
             if self.resume:
                 raise FileFormatError(
@@ -265,13 +267,13 @@ class Checkpoint:
         """Tell of a checkpoint that is about to be replaced, or do not replace it."""
         if stored.numbers["seconds"] < WORTH_KEEPING_S:
             self._tell(
-                f"nephroid: starting anew; resume would have gone on after {_work(stored)}, from"
-                f" {str(self.path)!r}"
+                f"nephroid: starting anew; resume would have gone on after {work_text(stored)},"
+                f" from {str(self.path)!r}"
             )
             return
         raise CheckpointError(
             self.path,
-            f"it holds {_work(stored)}: resume (--resume) goes on from there, no resume"
+            f"it holds {work_text(stored)}: resume (--resume) goes on from there, no resume"
             " (--no-resume) throws it away",
         )
 
@@ -301,51 +303,3 @@ class Checkpoint:
 
     def _beside(self, ending: str) -> Path:
         return self.path.with_name(self.path.name + ending)
-
-
-class _Gate(contextlib.AbstractContextManager[None]):
-    """Held while a file is created or renamed; once it is closed, nobody passes."""
-
-    def __init__(self) -> None:
-        self.is_open = False
-        self._lock = threading.Lock()
-
-    def close(self) -> None:
-        """Wait for who is passing, and let nobody follow."""
-        with self._lock:
-            self.is_open = False
-
-    def __enter__(self) -> None:
-        self._lock.acquire()
-        if not self.is_open:
-            self._lock.release()
-            raise KeyboardInterrupt
-
-    def __exit__(self, *error: object) -> None:
-        self._lock.release()
-
-
-def _work(stored: StoredState) -> str:
-    """How much work a file holds, in words.
-
-    Raises:
-        FileFormatError: it does not say.
-    """
-    passes, seconds = stored.numbers.get("passes"), stored.numbers.get("seconds")
-    if type(passes) is not int or passes < 0 or not isinstance(seconds, int | float):
-        raise FileFormatError("", "its header makes no sense")
-    return f"{_passes(passes)}, {_duration(float(seconds))} of work"
-
-
-def _passes(count: int) -> str:
-    return f"{count} pass{'' if count == 1 else 'es'}"
-
-
-def _duration(seconds: float) -> str:
-    """Rounded: 12 s, 3 min, 2.5 h."""
-    if not seconds >= 0.0:
-        raise FileFormatError("", "its header makes no sense")
-    if seconds < 120.0:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"
-
