@@ -11,6 +11,7 @@ from scenes.emitters import AnyEmitter, Emitter
 from scenes.endless import endless_problems
 from scenes.errors import Problem
 from scenes.film import Film
+from scenes.flush import flush_problems
 from scenes.materials import Dielectric, Metal
 from scenes.media import AMBIENT_NAMES, AmbientSpec, DescribedMedium, resolve_medium
 from scenes.objects import SceneObject
@@ -69,6 +70,7 @@ def cross_problems(
         *bin_problems(film, sensors),
         *_range_problems(used_ranges_nm(film, list(emitters.values())), ambient, objects),
         *overlap_problems(objects),
+        *flush_problems(objects),
         *endless_problems(ambient, objects, emitters),
     ]
 

@@ -10,6 +10,7 @@ from scenes.errors import Problem, refusal
 from scenes.fields import WAVELENGTH_RANGE_NM, Number, Positive, Wavelength
 from scenes.model import SceneModel
 from scenes.pixel_filter import BoxFilter, PixelFilter
+from spectra.srgb import Gamut
 
 __all__ = ["Film"]
 
@@ -42,10 +43,10 @@ class Film(SceneModel):
     observer: Literal["CIE 1931 2 degree", "CIE 2015 2 degree"] = Field(
         default="CIE 1931 2 degree", description="colour matching functions of the picture"
     )
-    gamut: Literal["desaturate", "clip"] = Field(
+    gamut: Gamut = Field(
         default="desaturate",
         description="how a colour outside sRGB enters it: toward white at constant luminance,"
-        " or by clipping each channel",
+        " by clipping each channel, or, to keep the hue of what is too bright as well, by dimming",
     )
     exposure_stops: Number | None = Field(
         default=None,

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from scenes.errors import Problem
 from scenes.materials import Dielectric
+from scenes.mesh_overlap import mesh_overlap_depth
 from scenes.objects import SceneObject
-from scenes.shapes import Plane
+from scenes.shapes import Plane, Triangulated
 from scenes.shapes.depth import height_above
 from scenes.shapes.reach import close_pairs, may_meet
 
@@ -24,6 +25,9 @@ FloatArray = NDArray[np.float64]
 
 _TOUCH = 1e-9
 """Solids that enter one another by less than this part of the smaller one's size only touch."""
+
+_TOUCH_OF_MESHES = 1e-6
+"""The same where one is made of triangles: files keep coordinates in single precision, to 6e-8."""
 
 _CELLS = 12
 _STARTS = 8
@@ -52,8 +56,10 @@ def _clash(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem | No
     assert not isinstance(one.shape, Plane)  # it encloses no medium
     assert not isinstance(other.shape, Plane)
     smaller = min(one.shape.bounding_sphere()[1], other.shape.bounding_sphere()[1])
-    depth = overlap_depth(one.shape, other.shape)
-    if depth <= _TOUCH * smaller:
+    meshed = isinstance(one.shape, Triangulated) or isinstance(other.shape, Triangulated)
+    touch = smaller * (_TOUCH_OF_MESHES if meshed else _TOUCH)
+    depth = overlap_depth(one.shape, other.shape, touch)
+    if depth <= touch:
         return None
     names = f"{other.name or f'objects[{j}]'!r} and {one.name or f'objects[{i}]'!r}"
     allowed = f"a priority other than {priority} for the one that fills the space they share"
@@ -64,13 +70,22 @@ def _clash(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem | No
     return Problem(f"objects[{j}].material.priority", message, priority, allowed)
 
 
-def overlap_depth(one: Any, other: Any) -> float:
+def overlap_depth(one: Any, other: Any, touch: float = 0.0) -> float:
     """How deep two solids enter one another [m]: how deep inside both a point can be; 0 if none.
 
     The height above both, max(h₁, h₂), is searched for its lowest point: on a grid over what
-    both solids' boxes share, then on ever finer grids about the best points found. For solids that
-    are not known (`height_above`), 0.
+    both solids' boxes share, then on ever finer grids about the best points found. Where one is
+    made of triangles, it is how deep the surface of one lies inside the other.
+
+    Args:
+        one: a closed shape.
+        other: a closed shape.
+        touch: up to what depth solids of triangles only touch [m].
     """
+    if isinstance(one, Triangulated):
+        return mesh_overlap_depth(one, other, touch)
+    if isinstance(other, Triangulated):
+        return mesh_overlap_depth(other, one, touch)
     low = np.maximum(_box(one)[0], _box(other)[0])
     high = np.minimum(_box(one)[1], _box(other)[1])
     if np.any(low > high):
@@ -82,8 +97,8 @@ def overlap_depth(one: Any, other: Any) -> float:
     lowest = np.inf
     for _ in range(_ROUNDS):
         heights = [height_above(shape, points) for shape in (one, other)]
-        if heights[0] is None or heights[1] is None:
-            return 0.0
+        assert heights[0] is not None  # every closed shape but triangles is known there
+        assert heights[1] is not None
         height = np.maximum(heights[0], heights[1])
         order = np.argsort(height, kind="stable")[:_STARTS]
         if height[order[0]] < lowest:

@@ -147,7 +147,7 @@ def send_canary(
     photons = max(_LEAST_PHOTONS, round(SHARE * settings.photons))
     edges_nm = np.asarray(required.scene.film.edges_nm, dtype=np.float64)
     direct = settings.direct_light == "photons"
-    lamps = compile_lamps(required, edges_nm, photons, direct=direct)
+    lamps = compile_lamps(required, edges_nm, photons, direct=direct or settings.bounces > 0)
     kernels = [make_trace_photons(one.precision, one.features) for one in (required, full)]
     load_kernels(kernels, device=required.device, threads=settings.threads)
     threshold = min(BRANCH_THRESHOLD, _ROULETTE * bound) if bound > 0.0 else BRANCH_THRESHOLD
@@ -160,8 +160,10 @@ def send_canary(
             max_interactions=settings.max_interactions,
             threads=settings.threads,
             store_direct=direct,
+            bounces=settings.bounces,
             range_size=1,
             branch_threshold=threshold,
+            by_band=False,  # each photon is a range of its own, and has a row of books
         )
         for one in (required, full)
     ]
@@ -199,9 +201,7 @@ def _difference_of_photons(one: PhotonBatch, other: PhotonBatch, diameter: float
     if emitted == 0.0:
         return 0.0
     displaced = float(np.sum(np.linalg.norm(moment, axis=0))) / diameter
-    books = [
-        np.array(dataclasses.astuple(batch.books), dtype=np.float64) for batch in (one, other)
-    ]
+    books = [np.array(batch.books.totals) for batch in (one, other)]
     misplaced = max(float(np.sum(np.abs(flux))), float(np.sum(np.abs(books[0] - books[1]))))
     return max(misplaced, displaced) / emitted
 

@@ -21,7 +21,12 @@ from sim.mesh_data import PlacedMesh, compile_meshes
 from sim.method import Method
 from sim.precision import precision_types
 from sim.scene_media import SceneMedia, collect_media
-from sim.scene_neighbours import find_neighbours, rank_media, touch_distance
+from sim.scene_neighbours import (
+    find_neighbours,
+    rank_media,
+    refuse_merged_sheets,
+    touch_distance,
+)
 from sim.scene_optics import fill_optics
 from sim.scene_structs import (
     ABSORBER,
@@ -161,6 +166,7 @@ def compile_scene(
     data = structs.Scene()
     places = _fill_shapes(data, scene, origin, precision, device)
     touch = touch_distance(bounding_radius(scene, origin), precision)
+    refuse_merged_sheets(scene, touch, precision)
     near: list[list[int]] = [[] for _ in scene.objects]
     if features.interfaces:
         near = find_neighbours(scene, _NEARNESS * touch)

@@ -3,9 +3,18 @@
 import numpy as np
 
 import scenes
+from scenes.flush import flush_pairs
 from scenes.shapes.reach import close_pairs, may_meet
+from sim.errors import SettingsError
 
-__all__ = ["find_neighbours", "near_pairs", "rank_media", "scene_size", "touch_distance"]
+__all__ = [
+    "find_neighbours",
+    "near_pairs",
+    "rank_media",
+    "refuse_merged_sheets",
+    "scene_size",
+    "touch_distance",
+]
 
 _TOUCH_BITS = {"float64": 40, "float32": 17}
 """Surfaces nearer to one another than 2^−this of the scene's size are in one place. That is some
@@ -37,6 +46,28 @@ def near_pairs(scene: scenes.Scene) -> list[tuple[int, int]]:
 def touch_distance(bounding_radius: float, precision: str) -> float:
     """How near surfaces are in one place [m]."""
     return float(np.ldexp(bounding_radius, -_TOUCH_BITS[precision]))
+
+
+def refuse_merged_sheets(scene: scenes.Scene, touch: float, precision: str) -> None:
+    """Make sure that no polariser becomes one with glass that the scene keeps it apart from.
+
+    Args:
+        scene: which has been checked for polarisers that lie on glass.
+        touch: how near surfaces are in one place [m].
+        precision: "float32" or "float64".
+
+    Raises:
+        SettingsError: single precision cannot tell a polariser from glass so near.
+    """
+    if precision != "float32":
+        return
+    sheets = (scenes.Dielectric, scenes.Polariser)
+    objects = {i: one for i, one in enumerate(scene.objects) if isinstance(one.material, sheets)}
+    for pair in flush_pairs(objects, touch):
+        if any(isinstance(objects[index].material, scenes.Dielectric) for index in pair):
+            one, other = (objects[index].name or f"objects[{index}]" for index in pair)
+            reason = f"{one!r} and {other!r} are nearer to one another than {touch:.2g} m"
+            raise SettingsError("precision", precision, f"'float64', since {reason}")
 
 
 def find_neighbours(scene: scenes.Scene, slack: float) -> list[list[int]]:

@@ -5,7 +5,7 @@ Reference:
     Part 2-1: Default RGB colour space - sRGB".
 """
 
-from typing import Final, Literal
+from typing import Final, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,9 @@ from spectra.observer import observer
 from spectra.piecewise import interpolate
 
 __all__ = [
+    "GAMUT_METHODS",
     "PRIMARIES_XY",
+    "Gamut",
     "encode_srgb",
     "luminance",
     "map_to_gamut",
@@ -37,6 +39,12 @@ _XYZ_TO_LINEAR_SRGB = read_only(np.linalg.inv(_LINEAR_SRGB_TO_XYZ))
 
 PRIMARIES_XY: Final = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))
 """Chromaticities x, y of red, green and blue (IEC 61966-2-1, table 1)."""
+
+Gamut: TypeAlias = Literal["desaturate", "clip", "preserve"]
+"""How colours are brought into what sRGB can show, see `map_to_gamut`."""
+
+GAMUT_METHODS: Final[tuple[Gamut, ...]] = get_args(Gamut)
+"""The gamut mappings there are, the default one first."""
 
 # How wavelength_to_srgb dims towards the ends of the visible, so that a drawing still shows there
 # is a ray: full from 420 to 680 nm, down to a third at and beyond the ends.
@@ -73,19 +81,21 @@ def luminance(linear_rgb: npt.ArrayLike) -> FloatArray:
     return y
 
 
-def map_to_gamut(
-    linear_rgb: npt.ArrayLike, method: Literal["desaturate", "clip"] = "desaturate"
-) -> FloatArray:
+def map_to_gamut(linear_rgb: npt.ArrayLike, method: Gamut = "desaturate") -> FloatArray:
     """Bring colours into what sRGB can show, 0 to 1 in each channel.
 
     "desaturate" moves a colour toward the grey of its own luminance, along a straight line in
     linear light, just until it fits: luminance is kept, and so is dominant wavelength. What is as
     bright as white or brighter becomes white. "clip" cuts each channel, which changes hue and
     luminance, but leaves colours alone that have nothing negative and are not too bright.
+    "preserve" keeps the hue of bright colours at the cost of their luminance: it moves a colour
+    toward the grey Y of its own luminance just until no channel is negative, C' = Y + s (C − Y)
+    with s = min(1, min Y / (Y − C)), and then divides it by its largest channel if that is above
+    1, which leaves its chromaticity as it is.
 
     Args:
         linear_rgb: Linear sRGB, shape (..., 3).
-        method: "desaturate" or "clip".
+        method: "desaturate", "clip" or "preserve".
 
     Returns:
         Linear sRGB within 0 to 1, shape (..., 3); NaN where it was NaN.
@@ -93,20 +103,30 @@ def map_to_gamut(
     Raises:
         SpectraError: If there is no such method.
     """
+    if method not in GAMUT_METHODS:
+        allowed = ", ".join(map(repr, GAMUT_METHODS))
+        raise SpectraError(f"unknown gamut mapping {method!r}; allowed: {allowed}")
     linear = np.asarray(linear_rgb, dtype=np.float64)
     if method == "clip":
         return _clip_to_unit(linear)
-    if method != "desaturate":
-        raise SpectraError(f"unknown gamut mapping {method!r}; allowed: 'desaturate', 'clip'")
-    grey = np.clip(luminance(linear), 0.0, 1.0)[..., np.newaxis]
+    if method == "preserve":
+        shown = _desaturated(linear, ceiling=np.inf)
+        return _clip_to_unit(shown / np.maximum(shown.max(axis=-1, keepdims=True), 1.0))
+    return _clip_to_unit(_desaturated(linear, ceiling=1.0))  # Rounding may leave 1e-17 outside.
+
+
+def _desaturated(linear: FloatArray, ceiling: float) -> FloatArray:
+    """Colours moved toward the grey of their luminance, just until they fit 0 to `ceiling`."""
+    grey = np.clip(luminance(linear), 0.0, ceiling)[..., np.newaxis]
     chroma = linear - grey
     # The share of its saturation that a channel leaves the colour: the room between the grey and
     # the wall it heads for, over the way it wants to go.
-    room = np.where(chroma > 0.0, 1.0 - grey, grey)
+    room = np.where(chroma > 0.0, ceiling - grey, grey)
     reach = np.abs(chroma)
     share = np.divide(room, reach, out=np.ones_like(reach), where=reach > room)
     kept = share.min(axis=-1, keepdims=True)
-    return _clip_to_unit(grey + kept * chroma)  # Rounding may leave 1e-17 outside.
+    moved: FloatArray = grey + kept * chroma
+    return moved
 
 
 def encode_srgb(linear_rgb: npt.ArrayLike) -> npt.NDArray[np.uint8]:

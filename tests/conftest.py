@@ -77,7 +77,10 @@ def synthetic_picture(small_scene: Scene) -> Picture:
     radiance = np.random.default_rng(7).exponential(1e-3, shape)
     radiance[0, 0] = [0.0, 2e-3, 0.0, 0.0]  # One band alone: outside the sRGB gamut.
     radiance[0, 1] = 0.0
-    energy = EnergyBooks(emitted=1.0, deposited=0.7, absorbed=0.1, escaped=0.15, culled=0.05)
+    energy = EnergyBooks(
+        emitted=1.0, deposited=0.7, absorbed=0.1, escaped=0.15, culled=0.05,
+        by_band=((0.25, 0.175, 0.025, 0.0375, 0.0125),) * 4,
+    )
     luminance = observer(film.observer).xyz(radiance, film.edges_nm)[..., 1]
     return Picture(
         spectral_radiance=radiance,

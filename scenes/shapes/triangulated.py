@@ -1,5 +1,7 @@
 """Shapes made of triangles: what meshes and height fields have in common."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
@@ -27,7 +29,7 @@ class Triangulated(SceneModel):
 
     def surface(self) -> Surface:
         """The triangles in the world's orientation, relative to `position`."""
-        return self.local_surface().moved(rotation_matrix(self.rotation_deg))
+        return _turned(self.local_surface(), self.rotation_deg)
 
     def vertices_world(self) -> NDArray[np.float64]:
         """The corners in the world, (k, 3) [m]."""
@@ -50,3 +52,9 @@ class Triangulated(SceneModel):
         if surface.seams.text:
             return f"it is not watertight: {surface.seams.text}"
         return "it is inside out" if surface.volume <= 0.0 else ""
+
+
+@lru_cache(maxsize=16)
+def _turned(surface: Surface, rotation_deg: tuple[float, float, float]) -> Surface:
+    """Kept: how far a mesh reaches is asked for in dozens of directions, one by one."""
+    return surface.moved(rotation_matrix(rotation_deg))

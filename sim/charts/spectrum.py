@@ -8,12 +8,13 @@ import numpy as np
 import numpy.typing as npt
 
 from sim.charts.curves import draw_curve, style_axes
-from sim.charts.swatches import GAMUT_METHODS, draw_swatches, hex_code, to_full_brightness
+from sim.charts.swatches import draw_swatches, hex_code, to_full_brightness
 from spectra.arrays import FloatArray
 from spectra.colorimetry import chromaticity, tristimulus
 from spectra.illuminants import blackbody
 from spectra.observer import observer
 from spectra.srgb import (
+    GAMUT_METHODS,
     PRIMARIES_XY,
     encode_srgb,
     map_to_gamut,
@@ -33,6 +34,8 @@ __all__ = ["plot_spectrum"]
 _SAMPLES = 1001
 _LOCUS_NM = (390.0, 700.0)
 """Beyond these the spectral locus turns back on itself."""
+_GLARE = 8.0
+"""How many times as bright as just fits a colour is shown, too."""
 _PLANCKIAN_K = np.array([1000, 1500, 2000, 2500, 3000, 4000, 5000, 6500, 10_000, 20_000, 1e5])
 
 
@@ -53,10 +56,12 @@ def plot_spectrum(source: EmissionSpectrum) -> Figure:
     _draw_chromaticity(figure.add_subplot(grid[:, 1]), xyz)
     rows = grid[1, 0].subgridspec(2, 1)
     axes = figure.add_subplot(rows[0, 0])
-    axes.set_title("gamut mapping, at full brightness", fontsize="medium")
-    is_seen = bool(xyz.sum() > 0.0)
-    colour = to_full_brightness(xyz_to_linear_srgb(xyz)) if is_seen else np.zeros(3)
-    draw_swatches(axes, {source.name if is_seen else "invisible": colour})
+    axes.set_title("gamut mapping, at full brightness and overexposed", fontsize="medium")
+    colours = {"invisible": np.zeros(3)}
+    if xyz.sum() > 0.0:
+        full = to_full_brightness(xyz_to_linear_srgb(xyz))
+        colours = {source.name: full, f"{_GLARE:g} times as bright": _GLARE * full}
+    draw_swatches(axes, colours)
     _draw_rainbows(figure.add_subplot(rows[1, 0]))
     return figure
 

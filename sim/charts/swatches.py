@@ -3,30 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from spectra.arrays import FloatArray
-from spectra.srgb import encode_srgb, luminance, map_to_gamut
+from spectra.srgb import GAMUT_METHODS, Gamut, encode_srgb, luminance, map_to_gamut
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 __all__ = [
-    "GAMUT_METHODS",
-    "Gamut",
     "draw_swatches",
     "hex_code",
     "shown_colours",
     "to_full_brightness",
 ]
-
-Gamut: TypeAlias = Literal["desaturate", "clip"]
-
-GAMUT_METHODS: Final[tuple[Gamut, ...]] = ("desaturate", "clip")
-"""The gamut mappings there are, the default one first."""
 
 _DARK_TEXT_ABOVE = 0.2
 
@@ -75,6 +68,6 @@ def draw_swatches(axes: Axes, colours: Mapping[str, npt.ArrayLike]) -> None:
     axes.set_ylim(len(GAMUT_METHODS), 0.0)
     axes.set_xticks(np.arange(len(colours)) + 0.5, list(colours))
     rows = np.arange(len(GAMUT_METHODS)) + 0.5
-    axes.set_yticks(rows, GAMUT_METHODS, rotation=90.0, va="center")
+    axes.set_yticks(rows, GAMUT_METHODS)
     axes.tick_params(length=0.0)
     axes.set_frame_on(False)

@@ -6,6 +6,8 @@ import argparse
 import json
 from typing import TYPE_CHECKING
 
+from sim.commands.energy import band_lines
+
 if TYPE_CHECKING:
     from sim.image.exr_reading import SpectralImage
 
@@ -62,8 +64,11 @@ def _print_origin(image: SpectralImage) -> None:
         values = json.loads(image.attribute(heading) or "{}")
         if values:
             print(f"  {heading}")
+        by_band = values.pop("by_band", ())
         for name, value in values.items():
             _print_row(f"  {name}", value, unit)
+        for line in band_lines(by_band, image.wavelengths_nm.tolist()):
+            print(f"  {line}")
 
 
 def _print_row(name: str, value: object, unit: str = "") -> None:

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sim.commands.arguments import count, duration, exr_file, fraction, png_file
+from sim.commands.energy import print_books
 from sim.commands.kept_work import kept_work
 from sim.commands.sensor_output import check_sensor_files, write_readings
 
@@ -135,7 +136,7 @@ def run(arguments: argparse.Namespace) -> None:
         work = _measure_to_files if measures else _render_to_files
         energy, timings = work(scene, settings, arguments, exr_path, checkpoint)
     if arguments.verbose:
-        _print_books(energy)
+        print_books(energy, scene.film.centres_nm.tolist())
         _print_timings(timings, time.perf_counter() - start)
 
 
@@ -254,16 +255,6 @@ def _accuracy_text(picture: Picture) -> str:
         f"error: {accuracy.relative_error:.2%} (noise {accuracy.relative_noise:.2%}, "
         f"bias {accuracy.relative_bias:.2%}) after {passes} passes: {picture.stopping}"
     )
-
-
-def _print_books(energy: EnergyBooks) -> None:
-    """Where the emitted flux went, in watts and as a share."""
-    books = dataclasses.asdict(energy)
-    print("energy")
-    for name, flux in books.items():
-        share = flux / energy.emitted if energy.emitted else math.nan
-        print(f"  {name:<14}{flux:14.9g} W {share:9.3%}")
-    print(f"  {'residual':<14}{energy.residual:14.3g} of the emitted")
 
 
 def _print_timings(timings: dict[str, float], seconds: float) -> None:

@@ -79,7 +79,7 @@ def compile_lamps(
     Raises:
         scenes.SceneError: no emitter shines inside the film's wavelengths.
     """
-    shining = _find_shining(compiled, edges_nm)
+    shining = find_shining(compiled, edges_nm)
     emitters = [(emitter, flux) for emitter, _, flux in shining]
     if guide is None:
         guide = plan_photons(compiled, emitters, view, direct=direct)
@@ -160,7 +160,7 @@ class _Tables:
         return data
 
 
-def _find_shining(
+def find_shining(
     compiled: CompiledScene, edges_nm: FloatArray
 ) -> list[tuple[Any, EmissionSpectrum, float]]:
     """The emitters that shine inside the film's range, each with what it gives there."""

@@ -136,10 +136,12 @@ def make_follow(precision: str, features: Features) -> object:
             met = scatter(scene, ray, hit, indices)
             if wp.static(features.sensors):
                 alpha = real(0.0)
+                tints = int(0)
                 if wp.static(features.absorption):
                     alpha = absorption_of(indices, met.medium)
+                    tints = scene.media[met.medium].tints
                 record_crossings(
-                    job, ray, hit.t, alpha, wavelength_nm, flux, history,
+                    job, ray, hit.t, alpha, wavelength_nm, flux, history, tints,
                     draws + wp.uint64(step), out_photons, out_counts,
                 )
             history = mark_dispersed(history, met.dispersive)

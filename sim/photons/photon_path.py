@@ -12,6 +12,7 @@ import warp as wp
 from sim.features import Features
 from sim.photons.emission import make_emission, make_wavelength_function
 from sim.photons.emitted_light import make_emitted_light
+from sim.photons.energy import BOOK_COLUMNS
 from sim.photons.lamp_structs import DISTANT, make_lamp_structs
 from sim.photons.photon_branches import FLOWS, make_follow
 from sim.photons.photon_structs import (
@@ -28,6 +29,8 @@ COLOURS = wp.constant(4)
 """Wavelengths, evenly spread over the lamp's distribution, of a photon that meets a dispersive
 surface first: light that leaves the glass nearly where it would without dispersion stays white
 from few photons."""
+
+COLUMNS = wp.constant(len(BOOK_COLUMNS))
 
 
 @functools.cache
@@ -54,6 +57,18 @@ def make_trace_photons(precision: str, features: Features) -> Any:
         return hit.prim >= 0
 
     @wp.func
+    def book(
+        job: job_type, wavelength_nm: real, flux: real, flows: FLOWS, out_photons: photons_type
+    ):
+        """Enter what became of `flux` at a wavelength into the books of its band."""
+        if job.bands > 0:
+            band = int((wavelength_nm - job.first_edge_nm) / job.band_width_nm)
+            column = wp.clamp(band, 0, job.bands - 1) * int(COLUMNS)
+            wp.atomic_add(out_photons.band_books, job.range_row, column, wp.float64(flux))
+            for k in range(4):
+                wp.atomic_add(out_photons.band_books, job.range_row, column + 1 + k, flows[k])
+
+    @wp.func
     def trace_photon(
         scene: scene_type, lamps: lamps_type, job: job_type, index: wp.uint32,
         out_photons: photons_type, out_counts: wp.array2d(dtype=int),
@@ -66,6 +81,10 @@ def make_trace_photons(precision: str, features: Features) -> Any:
         if wp.static(features.distant_lamps and features.flats):
             if is_shaded(scene, lamps.emitters[job.emitter], ray):
                 flows[2] = wp.float64(emitted)
+                wavelength_nm = sample_wavelength(
+                    lamps, lamps.emitters[job.emitter], u_wavelength
+                )
+                book(job, wavelength_nm, emitted, flows, out_photons)
                 return emitted, flows
         if emitted > real(0.0):
             # What meets a dispersive surface first is followed in several colours at once.
@@ -84,10 +103,12 @@ def make_trace_photons(precision: str, features: Features) -> Any:
                     lamps, lamps.emitters[job.emitter], u - wp.floor(u)
                 )
                 draws = first_draw(index, colour)
-                flows += follow(
+                went = follow(
                     scene, job, ray, first, wavelength_nm, flux, light, frame, draws, out_photons,
                     out_counts,
                 )
+                book(job, wavelength_nm, flux, went, out_photons)
+                flows += went
                 colour += 1
         return emitted, flows
 

@@ -87,6 +87,7 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
     Photons: `position` in the local frame [m]; `direction` where the photon was going, unit;
     `wavelength_nm`; `flux` [W]; `surface`, see `surface_key`; `history`, packed counts;
     `emitter`, the row of its lamp among those that shine; `crossings`, what sensors have recorded.
+    `band_books[range, 5 band + column]`: the energy books of each band [W], if the job has `bands`.
     """
     types = precision_types(precision)
     real, vec3 = types.real, types.vec3
@@ -103,6 +104,7 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         history: wp.array(dtype=int)
         emitter: wp.array(dtype=int)
         crossings: crossings_type
+        band_books: wp.array2d(dtype=wp.float64)
 
     @wp.struct
     class Job:
@@ -126,5 +128,8 @@ def make_photon_structs(precision: str) -> SimpleNamespace:
         branch_threshold: real
         sensors: sensors_type
         bounces: int  # off diffuse surfaces, at most
+        bands: int  # of which books are kept; 0: none
+        first_edge_nm: real
+        band_width_nm: real
 
     return SimpleNamespace(Photons=Photons, Job=Job)

@@ -72,6 +72,7 @@ def trace_photons(
     on_done: Callable[[int], None] | None = None,
     range_size: int = RANGE_SIZE,
     branch_threshold: float = BRANCH_THRESHOLD,
+    by_band: bool = True,
 ) -> PhotonBatch:
     """Emit and trace one pass of photons.
 
@@ -89,6 +90,7 @@ def trace_photons(
         on_done: told of finished photons.
         range_size: photons a launch.
         branch_threshold: a branch below this fraction of its photon's flux plays roulette for it.
+        by_band: keep energy books of each band of the film, too.
     """
     lamps.seed(compiled.device, seed, pass_index)
     shares: list[_Share] = []
@@ -100,7 +102,7 @@ def trace_photons(
             slot += room
     run = _Run(
         compiled, lamps, seed, pass_index, max_interactions, threads, store_direct, sensors,
-        bounces, stop, branch_threshold,
+        bounces, stop, branch_threshold, compiled.scene.film.bands if by_band else 0,
     )
     photons, counts, books = run.trace(shares, slot, on_done)
     if any(counts[i].max() > share.slot_count for i, share in enumerate(shares)):
@@ -117,9 +119,10 @@ def trace_photons(
             _slots(shares, counts[:, int(COUNT_RAYS)]), compiled.origin,
         )
     stored = counts[:, 0]
+    band_books = photons.band_books.numpy() if by_band else None
     return PhotonBatch(
-        photons, _slots(shares, stored), EnergyBooks.from_rows(books), compiled.origin, stored,
-        crossings,
+        photons, _slots(shares, stored), EnergyBooks.from_rows(books, band_books), compiled.origin,
+        stored, crossings,
     )
 
 
@@ -148,6 +151,7 @@ class _Run:
     bounces: int
     stop: threading.Event | None
     branch_threshold: float
+    bands: int
 
     def trace(
         self, shares: list[_Share], slots: int, on_done: Callable[[int], None] | None
@@ -158,6 +162,9 @@ class _Run:
         photons = allocate_photons(compiled.precision, device, slots)
         if self.sensors is not None:
             allocate_crossings(photons.crossings, self.sensors, compiled.precision, max(1, slots))
+        if self.bands > 0:
+            width = self.bands * len(BOOK_COLUMNS)
+            photons.band_books = wp.zeros((len(shares), width), dtype=wp.float64, device=device)
         counts = wp.zeros((len(shares), _ROW), dtype=int, device=device)
         books = wp.zeros((len(shares), _ROW), dtype=wp.float64, device=device)
 
@@ -198,6 +205,10 @@ class _Run:
         if self.sensors is not None:
             job.sensors = self.sensors.data
         job.bounces = self.bounces
+        film = self.compiled.scene.film
+        job.bands = self.bands
+        job.first_edge_nm = float(film.edges_nm[0])
+        job.band_width_nm = film.spacing_nm
         return job
 
 

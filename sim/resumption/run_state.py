@@ -58,8 +58,9 @@ class RunState:
 
     def arrays(self) -> NamedArrays:
         """What it takes to go on, by name."""
-        rows = [dataclasses.astuple(one) for one in self.books]
-        found: NamedArrays = {"books": np.array(rows).reshape(-1, len(BOOK_COLUMNS))}
+        rows = [(one.totals, *one.by_band) for one in self.books]
+        # Of each pass the totals, then its bands where they are kept.
+        found: NamedArrays = {"books": np.array(rows, dtype=np.float64)}
         if self.film is not None:
             found |= prefixed("film", self.film.state())
         if self.tally is not None:
@@ -82,14 +83,17 @@ class RunState:
         """
         passes = numbers.get("passes")
         seconds, longest = (_time(numbers, name) for name in ("seconds", "longest_round"))
-        books = arrays.get("books", np.zeros((0, 0)))
-        if type(passes) is not int or books.shape != (passes, len(BOOK_COLUMNS)):
+        books = arrays.get("books", np.zeros(0))
+        columns = (passes, len(BOOK_COLUMNS))
+        if type(passes) is not int or books.ndim != 3 or books.shape[::2] != columns:
             raise ValueError("its energy books are not those of its passes")
         if self.film is not None:
             self.film.restore(passes, part_of(arrays, "film"))
         if self.tally is not None:
             self.tally.restore(passes, part_of(arrays, "sensors"))
-        self.books[:] = [EnergyBooks(*row) for row in books.tolist()]
+        self.books[:] = [
+            dataclasses.replace(EnergyBooks(*row[0]), by_band=row[1:]) for row in books.tolist()
+        ]
         self.rule.go_on(longest)
         self.watch.go_on(passes, seconds)
 

@@ -13,7 +13,7 @@ import warp as wp
 
 from sim.geometry.flat import plane_coordinates
 from sim.optics.absorption import absorbed_fraction
-from sim.photons.photon_structs import make_photon_structs
+from sim.photons.photon_structs import is_dispersed, make_photon_structs
 from sim.sampling.counter import hash64, to_unit
 from sim.sampling.draws import LOT
 from sim.scene_structs import make_scene_structs
@@ -65,13 +65,21 @@ def make_record_crossings(precision: str) -> object:
         return wp.clamp(int((x + half) / (half + half) * real(cells)), 0, cells - 1)
 
     @wp.func
-    def bin_of(job: job_type, sensor: sensor_type, u: real, v: real, wavelength_nm: real):
-        """Bin of a crossing: rows from the top, as in a picture, then columns, then bands."""
+    def bin_of(
+        job: job_type, sensor: sensor_type, u: real, v: real, wavelength_nm: real, dispersed: int
+    ):
+        """Bin of a crossing: rows from the top, as in a picture, then columns, then bands.
+
+        Light that has met nothing dispersive has a bin for its lamp in place of one for its band.
+        """
         column = cell_of(u, sensor.half_u, sensor.columns)
         row = sensor.rows - 1 - cell_of(v, sensor.half_v, sensor.rows)
+        cell = row * sensor.columns + column
+        if dispersed == 0 and sensor.first_cell >= 0:
+            return sensor.first_cell + cell * job.sensors.lamps + job.emitter
         x = (wavelength_nm - job.sensors.first_edge_nm) / job.sensors.range_nm
         band = wp.clamp(int(x * real(sensor.bands)), 0, sensor.bands - 1)
-        return sensor.first_bin + (row * sensor.columns + column) * sensor.bands + band
+        return sensor.first_bin + cell * sensor.bands + band
 
     @wp.func
     def keep_ray(
@@ -90,12 +98,13 @@ def make_record_crossings(precision: str) -> object:
     @wp.func
     def record_crossings(
         job: job_type, ray: ray_type, t: real, alpha: real, wavelength_nm: real, flux: real,
-        history: int, draw: wp.uint64, out_photons: photons_type,
+        history: int, tints: int, draw: wp.uint64, out_photons: photons_type,
         out_counts: wp.array2d(dtype=int),
     ):
         """Record every sensor that the photon arrives at within the length t of its way.
 
-        It starts with `flux`, and on its way loses what a medium of the coefficient alpha takes.
+        It starts with `flux`, and on its way loses what a medium of the coefficient alpha takes,
+        which depends on the wavelength if the medium `tints`.
         """
         crossings = out_photons.crossings
         i = int(0)
@@ -117,7 +126,9 @@ def make_record_crossings(precision: str) -> object:
                             wavelength_nm, left, history, job.emitter, lot,
                         )
                     else:
-                        crossings.bin[slot] = bin_of(job, sensor, u, v, wavelength_nm)
+                        crossings.bin[slot] = bin_of(
+                            job, sensor, u, v, wavelength_nm, is_dispersed(history) | tints
+                        )
                         crossings.bin_flux[slot] = wp.float64(left)
             i += 1
 

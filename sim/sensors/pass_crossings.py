@@ -60,10 +60,10 @@ def collect_crossings(
         ray_slots: those that hold rays.
         origin: (3,) of the local frame, in the world [m].
     """
-    flux = np.zeros(bank.bin_count)
+    flux = np.zeros(bank.counted)
     if len(bin_slots):
         bins, fluxes = crossings.bin.numpy()[bin_slots], crossings.bin_flux.numpy()[bin_slots]
-        flux = np.bincount(bins, fluxes, bank.bin_count).astype(np.float64, copy=False)
+        flux = np.bincount(bins, fluxes, bank.counted).astype(np.float64, copy=False)
     rays: dict[str, npt.NDArray[Any]] = {}
     if len(ray_slots):
         names = (
@@ -71,4 +71,4 @@ def collect_crossings(
         )
         rays = {name: getattr(crossings, name).numpy()[ray_slots] for name in names}
         rays["position"] = rays["position"] + origin
-    return PassCrossings(flux, rays)
+    return PassCrossings(bank.spread(flux), rays)

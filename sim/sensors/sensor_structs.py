@@ -42,11 +42,13 @@ def make_sensor_structs(precision: str) -> SimpleNamespace:
         rows: int
         bands: int
         first_bin: int
+        first_cell: int  # of bins for undispersed light, a cell and a lamp each; −1: none
 
     @wp.struct
     class Sensors:
         sensors: wp.array(dtype=Sensor)
         count: int
+        lamps: int  # that shine
         first_edge_nm: real
         range_nm: real  # from the first edge to the last
 

@@ -5,7 +5,7 @@ References:
     colour-science computes it.
 """
 
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,7 @@ from sim.analytic import angle_between
 from sim.errors import SettingsError
 from sim.photons.energy import EnergyBooks
 from spectra.colour_science import import_colour_science
-from spectra.srgb import map_to_gamut, xyz_to_linear_srgb
+from spectra.srgb import Gamut, map_to_gamut, xyz_to_linear_srgb
 
 __all__ = [
     "ARCSECONDS",
@@ -78,7 +78,7 @@ def ciede2000(
     reference: npt.ArrayLike,
     *,
     exposure_stops: float,
-    gamut: Literal["desaturate", "clip"] = "desaturate",
+    gamut: Gamut = "desaturate",
 ) -> ColourDifference:
     """CIEDE2000 between two pictures, each developed at the same exposure.
 

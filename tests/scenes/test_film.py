@@ -32,7 +32,7 @@ def test_a_band_width_that_is_the_spacing_is_accepted() -> None:
         ({"bands": 4, "band_width_nm": 10.0}, "band_width_nm: must be the spacing of the 4 bands"),
         ({"bands": 1, "band_width_nm": 1200.0}, "must have bands between 10 and 1e.06 nm"),
         ({"bands": 0}, "bands: must be at least 1, is 0"),
-        ({"gamut": "cut"}, "gamut: must be 'desaturate' or 'clip', is 'cut'"),
+        ({"gamut": "cut"}, "gamut: must be 'desaturate', 'clip' or 'preserve', is 'cut'"),
         ({"observer": "CIE 1931"}, "observer: must be 'CIE 1931 2 degree' or 'CIE 2015 2 degree'"),
     ],
 )

@@ -182,3 +182,28 @@ def test_the_pools_crests_reach_the_floor_where_they_meet() -> None:
     assert 1.0 / powers[0] == pytest.approx(8.2, abs=0.1)
     assert 1.0 / powers[-1] == pytest.approx(2.9, abs=0.1)
     assert 1.0 / sum(powers) < water.depth
+
+
+def test_the_pools_colours_would_part_by_less_than_half_a_pixel() -> None:
+    scene = scenes.load("pool")
+    water = next(one for one in scene.objects if one.name == "water")
+    assert isinstance(water.material, scenes.Dielectric)
+    assert isinstance(water.shape, scenes.HeightField)
+    sun = next(one for one in scene.emitters if isinstance(one, scenes.Sun))
+    assert water.shape.depth is not None
+    assert scene.camera is not None
+    n = glass("water")
+    assert water.material.resolved().eta(550.0) == pytest.approx(n.eta(550.0), abs=5e-6)
+    incidence = math.acos(-sun.direction[1])
+    assert math.degrees(incidence) == pytest.approx(30.0, abs=0.1)
+    # Under calm water a ray comes d tan t from where it entered, sin i = n sin t (Snell).
+    blue, red = (
+        water.shape.depth * math.tan(math.asin(math.sin(incidence) / n.eta(wavelength_nm)))
+        for wavelength_nm in (450.0, 650.0)
+    )
+    assert red - blue == pytest.approx(3.3e-3, abs=5e-5)
+    # A pixel in the picture's middle, were there no water: that makes the floor seem nearer by
+    # less than the depth's n-th part, a tenth of the way.
+    distance = math.dist(scene.camera.position, scene.camera.look_at)
+    pixel = 2.0 * distance * math.tan(0.5 * math.radians(scene.camera.fov_deg)) / scene.film.height
+    assert red - blue < 0.5 * pixel

@@ -73,6 +73,20 @@ def test_the_spectroscopes_prism_stands_at_minimum_deviation_for_the_green_line(
     assert camera_lens.axis == pytest.approx(leaving, abs=1e-6)
 
 
+def test_the_spectroscopes_block_rises_through_the_lower_part_of_the_light() -> None:
+    block = shape_of(scenes.load("spectroscope"), "block")
+    assert isinstance(block, Box)
+    corners = 1e3 * block.vertices_world()
+    along = corners[:, [0, 2]] @ (0.386529, -0.922277)  # from the prism to the screen
+    top = corners[:, 1] > corners[:, 1].mean()
+    first, last = top & (along < along.mean()), top & (along > along.mean())
+    assert corners[first, 1] == pytest.approx(12.8, abs=0.05)
+    assert corners[last, 1] == pytest.approx(15.8, abs=0.05)
+    # Behind the camera lens, whose last vertex is 77 from the prism, and before the screen, 314.6.
+    assert (along.min() > 77.0, along.max() < 314.6) == (True, True)
+    assert 0.0 < corners[:, 1].min() < 1.0
+
+
 def test_the_papers_four_pictures_differ_in_the_solids_material_alone() -> None:
     first, *others = [scenes.load(name) for name in PAPER]
     solids = ("ball", "prism", "column")

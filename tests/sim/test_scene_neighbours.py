@@ -3,7 +3,14 @@
 import pytest
 
 import scenes
-from sim.scene_neighbours import find_neighbours, near_pairs, rank_media, touch_distance
+from sim.errors import SettingsError
+from sim.scene_neighbours import (
+    find_neighbours,
+    near_pairs,
+    rank_media,
+    refuse_merged_sheets,
+    touch_distance,
+)
 
 GLASS = scenes.Dielectric(medium="N-BK7")
 WHITE = scenes.Lambertian(reflectance=0.5)
@@ -67,3 +74,24 @@ def test_ranks_go_by_priority_and_then_by_order():
     order = sorted((0, 2, 3, 4), key=lambda prim: -ranks[prim])
     assert order == [2, 0, 3, 4]
     assert sorted(ranks[prim] for prim in order) == [0, 1, 2, 3]
+
+
+def test_single_precision_cannot_part_a_polariser_from_glass_so_near():
+    # 2^-17 of the scene's size is 8e-6 here: what is nearer is one surface, which a polariser on
+    # glass must not be.
+    block = scenes.SceneObject(
+        name="block", shape=scenes.Box(position=(0, -0.5, 0), size=(1, 1, 1)), material=GLASS
+    )
+    touch = touch_distance(1.0, "float32")
+
+    def over(gap):
+        shape = scenes.Rectangle(position=(0.0, gap, 0.0), size=(1.0, 1.0))
+        film = scenes.SceneObject(
+            name="film", shape=shape, material=scenes.Polariser(axis=(1, 0, 0))
+        )
+        return scenes.Scene(objects=[block, film])
+
+    with pytest.raises(SettingsError, match=r"precision: 'float32' .* 'float64', since 'block'"):
+        refuse_merged_sheets(over(0.5 * touch), touch, "float32")
+    refuse_merged_sheets(over(2.0 * touch), touch, "float32")
+    refuse_merged_sheets(over(0.5 * touch), touch_distance(1.0, "float64"), "float64")

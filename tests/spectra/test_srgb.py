@@ -15,7 +15,9 @@ from spectra import (
     wavelength_to_srgb,
     xyz_to_linear_srgb,
 )
+from spectra.srgb import Gamut
 
+METHODS: tuple[Gamut, Gamut] = ("preserve", "clip")
 COLOURS = arrays.arrays(np.float64, (4, 3), elements=st.floats(-10.0, 10.0))
 
 
@@ -107,8 +109,52 @@ def test_clipping_cuts_each_channel() -> None:
     assert map_to_gamut([-0.5, 0.5, 1.5], "clip").tolist() == [0.0, 0.5, 1.0]
 
 
-def test_there_are_two_gamut_mappings() -> None:
-    with pytest.raises(SpectraError, match="'perceptual'; allowed: 'desaturate', 'clip'"):
+@pytest.mark.parametrize(
+    ("linear", "mapped"),
+    [
+        ([0.2, 0.5, 0.9], [0.2, 0.5, 0.9]),  # Inside already.
+        ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+        ([9.0, 0.9, 0.0], [1.0, 0.1, 0.0]),  # Too bright alone: over the largest channel.
+        ([5.0, 5.0, 5.0], [1.0, 1.0, 1.0]),
+        ([-1.0, -1.0, 1.0], [0.0, 0.0, 0.0]),  # Darker than black: black.
+        # Out of gamut alone: as desaturating, see above, for Y = 0.30183.
+        ([1.0, 0.15, -0.25], map_to_gamut([1.0, 0.15, -0.25]).tolist()),
+    ],
+)
+def test_preserving_by_example(linear: list[float], mapped: list[float]) -> None:
+    assert map_to_gamut(linear, "preserve").tolist() == pytest.approx(mapped, abs=1e-15)
+
+
+@settings(deadline=None)
+@given(COLOURS)
+def test_preserving_desaturates_below_and_dims_above(
+    linear: np.ndarray[Any, np.dtype[np.float64]],
+) -> None:
+    # C' = Y + s (C - Y) with s = min(1, Y/(Y - min C)), which leaves min C' = 0, over max C' or 1.
+    for colour, mapped in zip(linear, map_to_gamut(linear, "preserve"), strict=True):
+        y, darkest = max(float(luminance(colour)), 0.0), float(colour.min())
+        share = y / (y - darkest) if darkest < 0.0 else 1.0
+        moved = y + share * (colour - y)
+        expected = moved / max(float(moved.max()), 1.0)
+        np.testing.assert_allclose(mapped, expected, rtol=0, atol=1e-14)
+
+
+def test_preserving_keeps_the_colour_of_a_light_as_it_brightens() -> None:
+    # The light of a laser, from dim to glaring: once too bright it is one colour, where
+    # desaturating ends in white and clipping turns orange to yellow.
+    laser = xyz_to_linear_srgb(observer().cmf[600 - 360])
+    series = np.geomspace(1.0, 1e3, 7)[:, np.newaxis] * laser
+    preserved, clipped = (map_to_gamut(series, method) for method in METHODS)
+    np.testing.assert_allclose(preserved, np.broadcast_to(preserved[0], (7, 3)), atol=1e-14)
+    assert preserved[0].max() == pytest.approx(1.0, abs=1e-15)
+    assert preserved[0].max() > 2.0 * preserved[0].min() + 0.4
+    assert clipped[-1].tolist() == [1.0, 1.0, 0.0]
+    assert map_to_gamut(series)[-1].tolist() == pytest.approx([1.0, 1.0, 1.0])
+
+
+def test_there_are_three_gamut_mappings() -> None:
+    allowed = "'perceptual'; allowed: 'desaturate', 'clip', 'preserve'"
+    with pytest.raises(SpectraError, match=allowed):
         map_to_gamut([0.0, 0.0, 0.0], "perceptual")  # type: ignore[arg-type]
 
 

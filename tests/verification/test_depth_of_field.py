@@ -31,6 +31,12 @@ def pictures(taken_by, distance):
     return np.array([sim.render(scene, one).spectral_radiance.sum(axis=2) for one in settings])
 
 
+def spot_radiance():
+    """ρ E/π, summed over both bands, E = I cos θ/d² at 45° from a point lamp of I = Φ/(4π)."""
+    irradiance = 1.0 / (4.0 * np.pi) * np.sqrt(0.5) / 0.5
+    return 2.0 * irradiance / np.pi / (830.0 - 360.0)
+
+
 @pytest.mark.parametrize("distance", [0.7, 1.6])
 def test_the_blur_circle_is_as_large_as_the_thin_lens_formula_says(assert_mean, distance):
     taken_by = camera(f_number=F_NUMBER, focus_distance=SHARP_DISTANCE)
@@ -51,6 +57,11 @@ def test_the_blur_circle_is_as_large_as_the_thin_lens_formula_says(assert_mean, 
     light = pictures(taken_by, distance)
     excess = (light * (r2 - expected)).sum(axis=(1, 2)) / (light.mean(axis=0).sum() * expected)
     assert_mean(excess, 0.0)
+    # Four points of the lens a pass, of which a part p sees the spot and its radiance L: a pixel's
+    # variance is at most that of four independent ones, L² p (1 − p)/4 < L mean/4, and a fourth of
+    # that of a single one, L² p (1 − p). Some 1e4 hits decide, so that 5 σ are 0.05.
+    hit = light.mean(axis=0).sum() * spot_radiance()
+    assert light.var(axis=0, ddof=1).sum() < 0.25 * 1.05 * hit
     # Nothing beyond the circle, by more than the spot's image and half a pixel's diagonal.
     assert not light[:, r2 > (0.5 * blur + image_radius + 0.71) ** 2].any()
 

@@ -58,6 +58,16 @@ SCENES = {
 }
 
 
+def _assert_bands_close(books, tolerance):
+    """In each band, too, and the bands add up to the whole."""
+    for band in books.bands:
+        assert abs(band.residual) < tolerance
+        assert band.emitted > 0.0
+        assert min(band.deposited, band.absorbed, band.escaped) >= 0.0
+    sums = np.sum(books.by_band, axis=0)
+    np.testing.assert_allclose(sums, books.totals, rtol=0, atol=tolerance * books.emitted)
+
+
 @pytest.mark.parametrize(
     ("name", "precision"),
     [(name, "float64") for name in SCENES] + [(n, "float32") for n in ("prism", "trap")],
@@ -69,6 +79,7 @@ def test_the_books_close(trace_passes, name, precision):
     for books, photons in zip(passes.books, passes.photons, strict=True):
         # Emitted = deposited + absorbed + escaped + culled.
         assert abs(books.residual) < tolerance
+        _assert_bands_close(books, tolerance)
         # What was deposited is what was stored.
         assert photons["flux"].sum() == pytest.approx(books.deposited, rel=tolerance)
         assert books.deposited > 0.0

@@ -5,8 +5,8 @@ import pytest
 from matplotlib.collections import LineCollection
 
 from sim.charts.spectrum import plot_spectrum
-from sim.charts.swatches import GAMUT_METHODS
 from spectra import EmissionSpectrum, blackbody, chromaticity, laser, spectrum, tristimulus
+from spectra.srgb import GAMUT_METHODS
 
 
 def test_a_continuous_spectrum_is_drawn_against_its_highest():
@@ -44,10 +44,18 @@ def test_the_light_stands_at_its_chromaticity(source):
     assert (mark.get_xdata()[0], mark.get_ydata()[0]) == (x, y)
     assert f"{x:.4f}" in mark.get_label()
     assert figure.get_suptitle() == source.name
-    assert len(figure.axes[2].patches) == len(GAMUT_METHODS)
+    # Each light twice: what glares is white by desaturating alone; preserving keeps its hue.
+    full, glaring = np.reshape(
+        [patch.get_facecolor() for patch in figure.axes[2].patches], (2, len(GAMUT_METHODS), 4)
+    )
+    methods = list(GAMUT_METHODS)
+    np.testing.assert_array_equal(glaring[methods.index("desaturate")], 1.0)
+    one, other = (codes[methods.index("preserve"), :3] for codes in (full, glaring))
+    assert other.max() == 1.0
+    assert other.min() <= other.max() - (one.max() - one.min())
 
 
-def test_both_gamut_mappings_of_the_rainbow_are_side_by_side():
+def test_the_gamut_mappings_of_the_rainbow_are_side_by_side():
     strips = plot_spectrum(spectrum("D65")).axes[3]
     (image,) = strips.images
     pixels = image.get_array()

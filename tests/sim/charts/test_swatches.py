@@ -5,20 +5,15 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from sim.charts.swatches import (
-    GAMUT_METHODS,
-    draw_swatches,
-    hex_code,
-    shown_colours,
-    to_full_brightness,
-)
+from sim.charts.swatches import draw_swatches, hex_code, shown_colours, to_full_brightness
+from spectra.srgb import GAMUT_METHODS
 
 
 def test_codes_are_written_as_style_sheets_have_them():
     assert hex_code(np.array([255, 9, 0], dtype=np.uint8)) == "#ff0900"
 
 
-def test_the_two_mappings_differ_where_a_colour_is_out_of_gamut():
+def test_mappings_differ_where_a_colour_is_out_of_gamut():
     inside = shown_colours([0.5, 0.5, 0.5])
     assert tuple(inside) == GAMUT_METHODS
     assert len({hex_code(codes) for codes in inside.values()}) == 1

@@ -1,6 +1,5 @@
 """`nephroid render` on the real renderer: its files, its report, and Ctrl-C."""
 
-import dataclasses
 import json
 import os
 import signal
@@ -14,6 +13,7 @@ from PIL import Image
 import scenes
 import sim
 from sim.cli import main
+from sim.photons.energy import EnergyBooks
 
 SMALL = ["--photons", "1500", "--passes", "2", "--seed", "3"]
 
@@ -45,7 +45,9 @@ def test_the_files_are_those_of_the_python_interface(folder):
     )
     assert picture.spectral_radiance.max() > 0.0
     assert json.loads(image.attribute("settings")) == picture.settings.reproducing()
-    assert json.loads(image.attribute("energy")) == dataclasses.asdict(picture.energy)
+    energy = EnergyBooks(**json.loads(image.attribute("energy")))
+    assert energy == picture.energy
+    assert len(energy.by_band) == 4
     with Image.open(folder / "bench.png") as developed:
         np.testing.assert_array_equal(np.asarray(developed), picture.srgb)
 
@@ -68,7 +70,7 @@ def test_outputs_exposure_and_report(folder, tmp_path, capfd):
         assert np.asarray(dark).mean() < np.asarray(automatic).mean()
     captured = capfd.readouterr()
     assert f"{exr} and {png}: 12 × 8, 4 bands" in captured.out
-    for heading in ("energy", "emitted", "deposited", "residual", "time", "gather", "in all"):
+    for heading in ("energy", "emitted", "deposited", "residual", "energy [W]", "time", "gather"):
         assert heading in captured.out
     assert "photons" in captured.err  # Progress, in plain lines, since this is no terminal.
     assert "\x1b" not in captured.err

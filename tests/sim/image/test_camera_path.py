@@ -113,14 +113,14 @@ def test_into_glass(darkroom, assert_mean):
 
 def test_in_a_mirror_of_glass(darkroom, assert_mean):
     # A camera looks along x onto a plate at 45° and sees the sheet below, reflected by both faces:
-    # with R the mean of s and p at a face, R + (1 − R)² R / (1 − R²) = 2R/(1 + R).
+    # R + (1 − R)² R / (1 − R²) = 2R/(1 + R) of s and of p, each with its own R at every face.
     plate = make_box(1.5, 0.02, PLAIN, width=1.0, rotation_deg=(0.0, 0.0, -45.0))
     camera = scenes.Camera(position=(-2.0, 1.5, 0.0), look_at=(0.0, 1.5, 0.0), fov_deg=2.0)
     beam = make_beam(1.0, (0.0, 1.0, -1.0), (0.0, -1.0, 1.0))
     means = block_means(darkroom, (SHEET, plate), beam, camera)
     # A turn of ±1° about 45° changes R by ±6% and, on average over the picture, by 1e-3 at most.
-    r = np.mean(fresnel_reflectance(np.sqrt(0.5), 1.0, ETA))
-    expected = np.full(6, 2.0 * r / (1.0 + r) * LIT)
+    r = np.array(fresnel_reflectance(np.sqrt(0.5), 1.0, ETA))
+    expected = np.full(6, np.mean(2.0 * r / (1.0 + r)) * LIT)
     assert_mean(means, expected, slack=2e-3 * expected)
     assert np.all(means.std(axis=0) < 0.2 * expected)
 

@@ -18,6 +18,7 @@ from sim.image.exr_layout import (
     radiance_wavelength_nm,
 )
 from sim.image.exr_reading import read_exr
+from sim.photons.energy import EnergyBooks
 
 # The pattern of the reference reader of Fichet, Pacanowski and Wilkie (2021).
 REFERENCE_PATTERN = re.compile(
@@ -124,7 +125,8 @@ def test_the_file_says_how_to_render_it_again(exr, synthetic_picture):
     settings = sim.RenderSettings(**json.loads(image.attribute("settings")))
     assert settings.reproducing() == synthetic_picture.settings.reproducing()
     assert image.attribute("seed") == "5"
-    assert json.loads(image.attribute("energy")) == dataclasses.asdict(synthetic_picture.energy)
+    energy = EnergyBooks(**json.loads(image.attribute("energy")))
+    assert energy == synthetic_picture.energy
     assert json.loads(image.attribute("band_edges_nm")) == synthetic_picture.edges_nm.tolist()
     assert image.attribute("bands") == "band means, W m^-2 sr^-1 nm^-1"
     assert image.attribute("scene_name") == "small"
