@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sim.errors import (
         CapacityError,
+        CheckpointError,
         DeviceError,
         FileFormatError,
         NephroidError,
         OutputError,
         SettingsError,
+        UnfinishedError,
     )
     from sim.image.exr_reading import SpectralImage, read_exr
     from sim.image.picture import Picture
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from sim.progress import Progress
     from sim.ray_path import RayPath
     from sim.render import render
+    from sim.resumption.checkpoint import Checkpoint
     from sim.sensors.irradiance import IrradianceReading
     from sim.sensors.rays import RaysReading
     from sim.settings import RenderSettings
@@ -32,6 +35,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CapacityError",
+    "Checkpoint",
+    "CheckpointError",
     "DeviceError",
     "FileFormatError",
     "IrradianceReading",
@@ -45,6 +50,7 @@ __all__ = [
     "RenderSettings",
     "SettingsError",
     "SpectralImage",
+    "UnfinishedError",
     "measure",
     "read_exr",
     "render",
@@ -53,6 +59,8 @@ __all__ = [
 
 _HOME = {
     "CapacityError": "sim.errors",
+    "Checkpoint": "sim.resumption.checkpoint",
+    "CheckpointError": "sim.errors",
     "DeviceError": "sim.errors",
     "FileFormatError": "sim.errors",
     "IrradianceReading": "sim.sensors.irradiance",
@@ -66,6 +74,7 @@ _HOME = {
     "RenderSettings": "sim.settings",
     "SettingsError": "sim.errors",
     "SpectralImage": "sim.image.exr_reading",
+    "UnfinishedError": "sim.errors",
     "measure": "sim.measure",
     "read_exr": "sim.image.exr_reading",
     "render": "sim.render",

@@ -11,11 +11,13 @@ import os
 import secrets
 import stat
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import BinaryIO
 
 from sim.errors import OutputError
 
-__all__ = ["check_writable", "write_whole"]
+__all__ = ["check_writable", "replacing", "write_whole"]
 
 
 def check_writable(path: str | os.PathLike[str]) -> None:
@@ -53,16 +55,47 @@ def write_whole(path: str | os.PathLike[str], data: bytes | memoryview) -> None:
         if _is_stream(path):
             Path(path).write_bytes(data)
             return
+    with replacing(path) as file:
+        file.write(data)
+
+
+@contextlib.contextmanager
+def replacing(
+    path: str | os.PathLike[str],
+    *,
+    temporary: Path | None = None,
+    gate: AbstractContextManager[object] | None = None,
+) -> Iterator[BinaryIO]:
+    """Write a file piece by piece that takes its name in one step, when all is on the disk.
+
+    Args:
+        path: The file; an existing one is replaced, if the block ends well.
+        temporary: What it is called meanwhile, in the same folder; None: a new hidden name.
+        gate: Entered while the temporary file is created, and while it takes its name; it may
+            raise what ends both. It is entered more than once.
+
+    Yields:
+        The temporary file, to write to.
+
+    Raises:
+        OutputError: It cannot be written; nothing has changed.
+    """
+    gate = contextlib.nullcontext() if gate is None else gate
+    with _told_as_output_error(path):
         _refuse_unusable_target(path)
-        temporary = _temporary_name(path)
+        temporary = _temporary_name(path) if temporary is None else temporary
         try:
-            with open(_create(temporary), "wb") as file:
-                file.write(data)
+            with gate:
+                descriptor = _create(temporary)
+            with open(descriptor, "wb") as file:
+                yield file
                 file.flush()
                 os.fsync(file.fileno())
-            os.replace(temporary, os.path.realpath(path))
+            with gate:
+                os.replace(temporary, os.path.realpath(path))
         except BaseException:  # Ctrl-C too leaves nothing behind.
-            temporary.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):  # The folder may have gone.
+                temporary.unlink(missing_ok=True)
             raise
 
 

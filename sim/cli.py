@@ -1,8 +1,9 @@
 """The command ``nephroid``: reads its arguments, runs one command, turns errors into one line.
 
-Exit status: 0 when it worked, 2 for bad input or an output that cannot be written, 130 after
-Ctrl-C. Each command is a module of `sim.commands`, and those load nothing heavy before their
-arguments are known to be good: the help appears at once.
+Exit status: 0 when it worked, 2 for bad input or an output that cannot be written, 1 for a run
+that failed after it had done work and for a check that failed, 130 after Ctrl-C or SIGTERM. Each
+command is a module of `sim.commands`, and those load nothing heavy before their arguments are
+known to be good: the help appears at once.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from sim.commands import explain, glass, info, render, scenes, schema, spectrum, study, trace
+from sim.errors import UnfinishedError
 from sim.native_output import end_silence
 from sim.version import VERSION
 
@@ -32,6 +34,7 @@ _COMMANDS = {
 }
 
 _SUCCESS = 0
+_FAILED = 1
 _BAD_INPUT = 2
 _STOPPED = 130  # 128 + SIGINT, as shells have it.
 
@@ -58,9 +61,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
     except SystemExit as leaving:  # From argparse: --help, --version or a bad argument.
         return leaving.code if isinstance(leaving.code, int) else _SUCCESS
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         end_silence()
-        print("nephroid: stopped", file=sys.stderr)
+        kept = f" after {stop}" if str(stop) else ""
+        print(f"nephroid: stopped{kept}", file=sys.stderr)
         return _STOPPED
     except BrokenPipeError:
         # Whoever read the output (`head`) has seen enough. Python flushes again at exit.
@@ -70,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if message is None:
             raise
         print(f"nephroid: error: {message}", file=sys.stderr)
-        return _BAD_INPUT
+        return _FAILED if isinstance(error, UnfinishedError) else _BAD_INPUT
     return _SUCCESS
 
 
@@ -93,7 +97,7 @@ def parse_arguments(arguments: Sequence[str] | None = None) -> argparse.Namespac
         arguments: What follows ``nephroid``; None: this process's own.
 
     Returns:
-        The command's name as ``command``, its arguments, and ``run``.
+        The command's name as ``command``, its arguments, ``run``, and all as it was, ``words``.
 
     Raises:
         SystemExit: For a bad argument, after one line on stderr, and after ``--help``.
@@ -110,7 +114,8 @@ def parse_arguments(arguments: Sequence[str] | None = None) -> argparse.Namespac
         )
         command.add_arguments(subparser)
         subparser.set_defaults(run=command.run)
-    return parser.parse_args(arguments)
+    words = tuple(sys.argv[1:] if arguments is None else arguments)
+    return parser.parse_args(words, argparse.Namespace(words=words))
 
 
 class _HelpFormatter(argparse.RawDescriptionHelpFormatter):

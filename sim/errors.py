@@ -6,6 +6,8 @@
     ├── SettingsError   (also ValueError)    a render setting outside what is allowed
     ├── OutputError     (also OSError)       a file that cannot be written
     ├── FileFormatError (also ValueError)    a file that is not what it should be
+    ├── CheckpointError (also ValueError)    a checkpoint that is not this run's
+    ├── UnfinishedError (also RuntimeError)  a run that failed after it had done work
     ├── CapacityError   (also RuntimeError)  more data than the run can hold
     └── DeviceError     (also RuntimeError)  a compute device that is not there or fails
 
@@ -18,12 +20,17 @@ import os
 
 __all__ = [
     "CapacityError",
+    "CheckpointError",
     "DeviceError",
     "FileFormatError",
     "NephroidError",
     "OutputError",
     "SettingsError",
+    "UnfinishedError",
 ]
+
+LISTED_DIFFERENCES = 8
+"""A message names so many; the error has them all."""
 
 
 class NephroidError(Exception):
@@ -82,6 +89,40 @@ class FileFormatError(NephroidError, ValueError):
 
     def __str__(self) -> str:
         return f"cannot read {self.path!r}: {self.reason}"
+
+
+class CheckpointError(NephroidError, ValueError):
+    """A checkpoint cannot be gone on with, or must not be thrown away.
+
+    Attributes:
+        path: The checkpoint.
+        reason: Why, in words.
+        differences: Of each field that differs: its path, what the checkpoint has, what is asked.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        reason: str,
+        differences: tuple[tuple[str, str, str], ...] = (),
+    ) -> None:
+        super().__init__(os.fspath(path), reason, differences)
+        self.path = os.fspath(path)
+        self.reason = reason
+        self.differences = differences
+
+    def __str__(self) -> str:
+        lines = [
+            f"\n  {field}: {stored} in the checkpoint, {asked} asked"
+            for field, stored, asked in self.differences[:LISTED_DIFFERENCES]
+        ]
+        if len(self.differences) > LISTED_DIFFERENCES:
+            lines.append(f"\n  and {len(self.differences) - LISTED_DIFFERENCES} more")
+        return f"checkpoint {self.path!r}: {self.reason}{''.join(lines)}"
+
+
+class UnfinishedError(NephroidError, RuntimeError):
+    """A run failed after it had done work; the message says what is kept, and how to go on."""
 
 
 class CapacityError(NephroidError, RuntimeError):

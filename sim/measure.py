@@ -13,11 +13,15 @@ import scenes
 from sim.canary import choose_kernels
 from sim.device import start_device
 from sim.launch import load_kernels
+from sim.memory.estimate import require_memory
 from sim.photons.energy import EnergyBooks
 from sim.photons.lamps import compile_lamps
 from sim.photons.photon_path import make_trace_photons
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
+from sim.resumption.checkpoint import Checkpoint
+from sim.resumption.fingerprint import fingerprint_of
+from sim.resumption.run_state import RunState
 from sim.sensors.origin import Origin
 from sim.sensors.readings import Readings, read_sensors
 from sim.sensors.sensor_bank import compile_sensors
@@ -57,6 +61,7 @@ def measure(
     settings: RenderSettings | None = None,
     *,
     progress: ProgressCallback | None = None,
+    checkpoint: Checkpoint | None = None,
 ) -> Measurement:
     """Measure what the sensors of `scene` receive; a camera is not needed, nor used.
 
@@ -68,6 +73,7 @@ def measure(
         settings: what to spend; by default the scene's own settings. A target error is that of
             the irradiance of all cells, and of the flux through sensors that keep rays.
         progress: told how far the run is, some times a second.
+        checkpoint: where the run's state is kept, and from where it goes on; None: nowhere.
 
     Returns:
         The readings, with their standard errors, and where the energy went.
@@ -75,10 +81,14 @@ def measure(
     Raises:
         scenes.SceneError: the scene lacks something that a measurement needs.
         DeviceError: the device does not exist.
+        CapacityError: there is not enough memory for it.
+        CheckpointError: the checkpoint is of another run; says what differs.
         KeyboardInterrupt: on Ctrl-C, within a fraction of a second.
     """
     scene.require_measurable()
     plan = (settings or RenderSettings()).resolved(scene)
+    if checkpoint is not None:
+        checkpoint.expect(fingerprint_of(scene, plan, pictured=False), plan.passes)
     watch = Stopwatch(plan, progress)
     with watch.timing("compile"):
         device = start_device(plan.device)
@@ -88,10 +98,14 @@ def measure(
         load_kernels([kernel], device=device, threads=plan.threads)
         edges_nm = np.asarray(scene.film.edges_nm, dtype=np.float64)
         lamps = compile_lamps(compiled, edges_nm, plan.photons)
+        require_memory(compiled, lamps, plan, pictured=False)
         bank = compile_sensors(compiled)
         assert bank is not None  # require_measurable has seen to it
-    tally, books, rule = SensorTally(bank), [], StopRule(plan, watch)
-    for pass_index in range(plan.passes):
+    tally, rule = SensorTally(bank), StopRule(plan, watch)
+    books: list[EnergyBooks] = []
+    state = RunState(books, rule, watch, tally=tally)
+    first = 0 if checkpoint is None else checkpoint.begin(state)
+    for pass_index in range(first, plan.passes):
         watch.pass_index = pass_index
         with watch.timing("trace photons"):
             batch = trace_photons(
@@ -110,7 +124,10 @@ def measure(
             assert batch.crossings is not None
             tally.add(batch.crossings)
         books.append(batch.books)
-        if rule.ends_after(tally):
+        ends = state.ends()
+        if checkpoint is not None:
+            checkpoint.offer(state)
+        if ends:
             break
     energy, closed = EnergyBooks.mean(books), plan.closed(len(books))
     return Measurement(

@@ -28,6 +28,7 @@ from sim.image.picture import Picture
 from sim.image.sight import compose_lights
 from sim.image.survey import Survey, make_measure_footprints, survey_view
 from sim.launch import load_kernels
+from sim.memory.estimate import require_memory
 from sim.photons.energy import EnergyBooks
 from sim.photons.guided_lamps import compile_guided_lamps
 from sim.photons.lamps import Lamps, compile_lamps
@@ -38,6 +39,9 @@ from sim.photons.pilot import make_retrace_emission
 from sim.photons.receivers import compile_receivers
 from sim.photons.tracing import trace_photons
 from sim.progress import ProgressCallback
+from sim.resumption.checkpoint import Checkpoint
+from sim.resumption.fingerprint import fingerprint_of
+from sim.resumption.run_state import RunState
 from sim.scene_data import CompiledScene
 from sim.sensors.origin import Origin
 from sim.sensors.pass_crossings import PassCrossings
@@ -56,6 +60,7 @@ def render(
     settings: RenderSettings | None = None,
     *,
     progress: ProgressCallback | None = None,
+    checkpoint: Checkpoint | None = None,
 ) -> Picture:
     """Render `scene` to spectral radiance.
 
@@ -63,6 +68,7 @@ def render(
         scene: with a camera, at least one emitter, and at least one diffuse object.
         settings: what to spend; by default the scene's own settings.
         progress: told how far the run is, some times a second.
+        checkpoint: where the run's state is kept, and from where it goes on; None: nowhere.
 
     Returns:
         The picture: band means with their standard error, and where the energy went.
@@ -71,10 +77,14 @@ def render(
         scenes.SceneError: the scene lacks something that a picture needs.
         SettingsError: the gather radius, or the precision, does not do for this scene.
         DeviceError: the device does not exist.
+        CapacityError: there is not enough memory for it.
+        CheckpointError: the checkpoint is of another run; says what differs.
         KeyboardInterrupt: on Ctrl-C, within a fraction of a second.
     """
     scene.require_renderable()
     plan = (settings or RenderSettings()).resolved(scene)
+    if checkpoint is not None:
+        checkpoint.expect(fingerprint_of(scene, plan, pictured=True), plan.passes)
     watch = Stopwatch(plan, progress)
     with watch.timing("compile"):
         device = start_device(plan.device)
@@ -88,6 +98,7 @@ def render(
         survey = survey_view(compiled, camera, float(0.5 * (edges_nm[0] + edges_nm[-1])))
         lamps = compile_lamps_for(compiled, survey, plan)
         receivers = compile_receivers(compiled, lamps, edges_nm)
+        require_memory(compiled, lamps, plan, pictured=True)
         radius = choose_gather_radius(compiled, survey, scene.film, plan)
         film = create_film(
             edges_nm, len(lamps.spectra), device, radius_scale=radius.scale, passes=plan.passes
@@ -95,16 +106,21 @@ def render(
         sensors = compile_sensors(compiled)
     studio = _Studio(compiled, lamps, receivers, camera, sensors, plan, radius, watch)
     tally = SensorTally(sensors) if sensors is not None else None
-    books = []
+    books: list[EnergyBooks] = []
     rule = StopRule(plan, watch)
-    with closing(studio.photon_maps()) as photon_maps:
-        for pass_index, (maps, pass_books, crossings) in enumerate(photon_maps):
+    state = RunState(books, rule, watch, film=film, tally=tally)
+    first = 0 if checkpoint is None else checkpoint.begin(state)
+    with closing(studio.photon_maps(first)) as photon_maps:
+        for pass_index, (maps, pass_books, crossings) in enumerate(photon_maps, first):
             books.append(pass_books)
             if tally is not None and crossings is not None:
                 tally.add(crossings)
             with watch.timing("gather"):
                 studio.expose(film, maps, pass_index)
-            if film.passes % film.turns == 0 and rule.ends_after(film):
+            ends = state.ends()
+            if checkpoint is not None:
+                checkpoint.offer(state)
+            if ends:
                 break
     energy, closed = EnergyBooks.mean(books), plan.closed(film.passes)
     origin = Origin(scene=scene, settings=closed, energy=energy)
@@ -190,17 +206,19 @@ class _Studio:
     radius: GatherRadius
     watch: Stopwatch
 
-    def photon_maps(self) -> Generator[_Pass, None, None]:
-        """Each pass, in order.
+    def photon_maps(self, first: int = 0) -> Generator[_Pass, None, None]:
+        """Each pass from the `first` on, in order.
 
         The next map is made while the caller gathers from this one: building a grid is serial,
         and would leave the other cores idle.
         """
+        if first >= self.plan.passes:
+            return
         stop = threading.Event()
         with ThreadPoolExecutor(1) as workshop:
             try:
-                coming = workshop.submit(self._photon_map, 0, stop)
-                for pass_index in range(self.plan.passes):
+                coming = workshop.submit(self._photon_map, first, stop)
+                for pass_index in range(first, self.plan.passes):
                     ready = coming.result()
                     if pass_index + 1 < self.plan.passes:
                         coming = workshop.submit(self._photon_map, pass_index + 1, stop)

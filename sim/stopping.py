@@ -34,19 +34,25 @@ class StopRule:
 
     Attributes:
         outcome: Why the run ended, in words.
+        longest_round: What the longest round has taken [s].
     """
 
     def __init__(self, plan: ResolvedSettings, watch: Stopwatch) -> None:
         self._plan = plan
         self._watch = watch
         self._round_began = watch.seconds
-        self._longest_round = 0.0
+        self.longest_round = 0.0
         self.outcome = "all passes"
+
+    def go_on(self, longest_round: float) -> None:
+        """Begin a round after others, of an earlier run, the longest of which took so long [s]."""
+        self.longest_round = longest_round
+        self._round_began = self._watch.seconds
 
     def ends_after(self, film: ExposedFilm) -> bool:
         """True if the round that `film` just completed is to be the last."""
         now = self._watch.seconds
-        self._longest_round = max(self._longest_round, now - self._round_began)
+        self.longest_round = max(self.longest_round, now - self._round_began)
         self._round_began = now
         if film.rounds < LEAST_ROUNDS:
             return False
@@ -56,7 +62,7 @@ class StopRule:
         if target is not None and error <= target:
             self.outcome = "target error"
             return True
-        if budget is not None and now + self._longest_round > budget:
+        if budget is not None and now + self.longest_round > budget:
             self.outcome = "time budget"
             return True
         return False

@@ -32,6 +32,12 @@ class Stopwatch:
         """Time since the rendering began [s]."""
         return time.perf_counter() - self.start
 
+    def go_on(self, passes: int, seconds: float) -> None:
+        """Count on from an earlier run, which has made so many passes in so many seconds."""
+        self.start -= seconds
+        self.pass_index = passes
+        self.photons_done = passes * self.settings.photons
+
     @contextmanager
     def timing(self, stage: str) -> Iterator[None]:
         """Time a stage, under its name."""

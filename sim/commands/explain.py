@@ -3,7 +3,8 @@
 Kernels are compiled for what the scene requires and no more. For each feature: whether it is on,
 the bound on the error that leaving it out can cause, the time of the kernel with it over that
 without it, and why. A feature is left out where its bound is 0, or while the bounds of all that is
-left out add up to no more than the tolerance.
+left out add up to no more than the tolerance. Last, memory: a run that has less than it will take
+refuses to begin.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from scenes import Scene
     from sim.canary import CanaryReport
     from sim.features import Decision, FeaturePlan
+    from sim.memory.estimate import MemoryEstimate
     from sim.settings import ResolvedSettings
 
 __all__ = ["SUMMARY", "add_arguments", "run"]
@@ -31,6 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
     parser.add_argument("--measure", action="store_true",
                         help="measure the times here, on this scene (a minute or two)")
+    parser.add_argument("--memory", action="store_true",
+                        help="trace some photons, to tell what memory a run takes at its peak")
     parser.add_argument("--check", action="store_true",
                         help="trace 1%% of a pass's photons with the full kernel as well, and"
                              " compare; status 1 if they differ by more than the bounds say")
@@ -69,6 +73,7 @@ def run(arguments: argparse.Namespace) -> None:
     print(f"time: of the kernel with the feature ÷ without it, {where}")
     if costs is not None:
         _print_full_kernels(costs)
+    print(_memory_text(scene, resolved, traced=arguments.memory))
     if arguments.check:
         _print_canary(run_interruptibly(functools.partial(_checked, scene, resolved)))
 
@@ -86,6 +91,26 @@ def _checked(scene: Scene, settings: ResolvedSettings) -> CanaryReport | None:
 
     device = start_device(settings.device)
     return choose_kernels(scene, settings, device=device, check=True).canary
+
+
+def _memory_text(scene: Scene, settings: ResolvedSettings, *, traced: bool) -> str:
+    """What a run would take, if photons may be traced for it, and what there is."""
+    from sim.interruption import run_interruptibly
+    from sim.memory.available import available_memory
+    from sim.memory.sizes import film_memory, size_text
+
+    available = available_memory()
+    there = "" if available is None else f"; {size_text(available)} are there"
+    if not traced:
+        film = size_text(sum(film_memory(scene)))
+        return f"memory: the film takes {film}{there}; --memory adds what photons take"
+
+    def foresee() -> MemoryEstimate:
+        from sim.memory.prospect import foresee_memory
+
+        return foresee_memory(scene, settings, pictured=scene.camera is not None)
+
+    return f"memory: a run takes about {run_interruptibly(foresee)}{there}"
 
 
 def _print_table(plan: FeaturePlan, costs: dict[str, float] | None) -> None:

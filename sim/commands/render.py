@@ -4,6 +4,9 @@ The EXR holds spectral radiance band by band, its standard error, linear RGB, an
 reproduces it. Of a scene without a camera only the sensors are written: irradiance as an EXR and as
 arrays (.npz), rays as arrays. Settings that are left out come from the scene's own [render] table,
 then from the program's defaults.
+
+While it runs, a checkpoint beside the EXR keeps what is done: after a crash, a kill or Ctrl-C the
+same command with --resume goes on from there, to the same files byte by byte.
 """
 
 from __future__ import annotations
@@ -19,11 +22,15 @@ from typing import TYPE_CHECKING
 
 from sim.commands.arguments import count, duration, exr_file, fraction, png_file
 from sim.commands.energy import print_books
+from sim.commands.kept_work import kept_work
+from sim.commands.sensor_output import check_sensor_files, write_readings
 
 if TYPE_CHECKING:
     from scenes import Scene
     from sim.image.picture import Picture
     from sim.measure import Measurement
+    from sim.photons.energy import EnergyBooks
+    from sim.resumption.checkpoint import Checkpoint
     from sim.settings import RenderSettings
 
 __all__ = ["SUMMARY", "add_arguments", "run"]
@@ -52,6 +59,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--time-budget", type=duration, metavar="60s",
                         help="begin no passes that would end later than this after the start; "
                              "writing the files comes on top")
+    parser.add_argument("--resume", action=argparse.BooleanOptionalAction, default=None,
+                        help="go on from the checkpoint of a run that was cut short, OUT.exr."
+                             "checkpoint, to the file that it would have written; --no-resume: "
+                             "throw the checkpoint away (default: start anew, but refuse to throw "
+                             "away a minute's work or more)")
     parser.add_argument("--error-map", type=png_file, metavar="OUT.png",
                         help="also draw each pixel's relative error")
     parser.add_argument("--photon-map", action="store_true",
@@ -98,8 +110,8 @@ _stops.__name__ = "number of stops"
 def run(arguments: argparse.Namespace) -> None:
     """Render, then write the files; outputs, settings and scene are checked before."""
     from scenes import load
-    from sim.atomic_file import check_writable, write_whole
-    from sim.commands.sensor_output import check_sensor_files, write_readings
+    from sim.atomic_file import check_writable
+    from sim.errors import SettingsError
     from sim.settings import RenderSettings
 
     start = time.perf_counter()
@@ -108,24 +120,56 @@ def run(arguments: argparse.Namespace) -> None:
     settings = RenderSettings(**given)
     scene = load(arguments.scene)
     if arguments.photon_map:
+        if arguments.resume:
+            raise SettingsError("resume", True, "no --resume: a photon map is of one pass")
         _draw_photons(scene, settings, arguments.png or Path(f"{scene.source_name}.photons.png"))
         return
     exr_path = arguments.output or Path(f"{scene.source_name}.exr")
     check_sensor_files(scene, exr_path)
     pictured = arguments.png is not None or arguments.error_map is not None
-    if scene.sensors and scene.camera is None and not pictured:
-        measurement = _measured(scene, settings)
-        write_readings(scene, measurement.sensors, exr_path)
-        if arguments.verbose:
-            print_books(measurement.energy, scene.film.centres_nm.tolist())
-            _print_timings(measurement.timings, time.perf_counter() - start)
-        return
+    measures = scene.sensors and scene.camera is None and not pictured
+    if not measures:
+        for path in (exr_path, arguments.png or exr_path.with_suffix(".png"), arguments.error_map):
+            if path is not None:
+                check_writable(path)
+    with kept_work(exr_path, arguments.words, resume=arguments.resume) as checkpoint:
+        work = _measure_to_files if measures else _render_to_files
+        energy, timings = work(scene, settings, arguments, exr_path, checkpoint)
+    if arguments.verbose:
+        print_books(energy, scene.film.centres_nm.tolist())
+        _print_timings(timings, time.perf_counter() - start)
+
+
+_Account = tuple["EnergyBooks", dict[str, float]]
+"""Where the energy and the time went."""
+
+
+def _measure_to_files(
+    scene: Scene,
+    settings: RenderSettings,
+    _arguments: argparse.Namespace,
+    output: Path,
+    checkpoint: Checkpoint,
+) -> _Account:
+    """Measure, and write what the sensors have measured."""
+    measurement = _measured(scene, settings, checkpoint)
+    write_readings(scene, measurement.sensors, output)
+    return measurement.energy, measurement.timings
+
+
+def _render_to_files(
+    scene: Scene,
+    settings: RenderSettings,
+    arguments: argparse.Namespace,
+    exr_path: Path,
+    checkpoint: Checkpoint,
+) -> _Account:
+    """Render, and write the picture and what the sensors have measured."""
+    from sim.atomic_file import write_whole
+
+    start = time.perf_counter()
     png_path = arguments.png or exr_path.with_suffix(".png")
-    check_writable(exr_path)
-    check_writable(png_path)
-    if arguments.error_map is not None:
-        check_writable(arguments.error_map)
-    picture, exr, png = _rendered(scene, settings, arguments.exposure)
+    picture, exr, png = _rendered(scene, settings, arguments.exposure, checkpoint)
     write_whole(exr_path, exr)
     write_whole(png_path, png)
     if arguments.error_map is not None:
@@ -135,9 +179,7 @@ def run(arguments: argparse.Namespace) -> None:
     print(f"{exr_path} and {png_path}: {width} × {height}, {bands} bands, {seconds:.1f} s")
     print(_accuracy_text(picture))
     write_readings(scene, picture.sensors, exr_path)
-    if arguments.verbose:
-        print_books(picture.energy, scene.film.centres_nm.tolist())
-        _print_timings(picture.timings, seconds)
+    return picture.energy, picture.timings
 
 
 def _draw_photons(scene: Scene, settings: RenderSettings, path: Path) -> None:
@@ -157,7 +199,10 @@ def _draw_photons(scene: Scene, settings: RenderSettings, path: Path) -> None:
 
 
 def _rendered(
-    scene: Scene, settings: RenderSettings, exposure_stops: float | None
+    scene: Scene,
+    settings: RenderSettings,
+    exposure_stops: float | None,
+    checkpoint: Checkpoint,
 ) -> tuple[Picture, memoryview, memoryview]:
     """The picture and the content of its two files, EXR and PNG."""
     from sim.image.exr import encode_exr
@@ -169,7 +214,7 @@ def _rendered(
     def work(progress: ProgressCallback) -> tuple[Picture, memoryview, memoryview]:
         from sim.render import render
 
-        picture = render(scene, settings, progress=progress)
+        picture = render(scene, settings, progress=progress, checkpoint=checkpoint)
         exr = encode_exr(picture, exposure_stops=exposure_stops)
         return picture, exr, encode_png(picture.develop(exposure_stops=exposure_stops))
 
@@ -177,7 +222,9 @@ def _rendered(
         return run_interruptibly(functools.partial(work, progress))
 
 
-def _measured(scene: Scene, settings: RenderSettings) -> Measurement:
+def _measured(
+    scene: Scene, settings: RenderSettings, checkpoint: Checkpoint
+) -> Measurement:
     """What the sensors measure, without a picture."""
     from sim.interruption import run_interruptibly
     from sim.progress import ProgressCallback
@@ -186,7 +233,7 @@ def _measured(scene: Scene, settings: RenderSettings) -> Measurement:
     def work(progress: ProgressCallback) -> Measurement:
         from sim.measure import measure
 
-        return measure(scene, settings, progress=progress)
+        return measure(scene, settings, progress=progress, checkpoint=checkpoint)
 
     with progress_display(sys.stderr) as progress:
         return run_interruptibly(functools.partial(work, progress))

@@ -11,6 +11,7 @@ import warp as wp
 from sim.image.accuracy import Accuracy
 from sim.image.camera_path import make_film_struct, make_render_camera
 from sim.launch import Range, cut_ranges, launch_ranges
+from sim.named_arrays import NamedArrays
 from sim.sampling.counter import fold_key
 from sim.scene_data import CompiledScene
 
@@ -23,6 +24,10 @@ _RANGE_SIZE = 1024
 
 _CAMERA_KEY = 0xCA3E2A
 """Tells the camera's random numbers from the photons' of the same seed and pass."""
+
+
+_SUMS = ("mean", "squares", "tally")
+"""What a film adds up; its `sample` too, while a round of turns is under way."""
 
 
 @dataclass
@@ -74,6 +79,29 @@ class Film:
             corrected_noise=self._error_of(tally[..., 5]),
             replicates=self.rounds,
         )
+
+    def state(self) -> NamedArrays:
+        """What it takes to go on after this pass, by name; views on the CPU, for the moment."""
+        names = _SUMS if self.passes % self.turns == 0 else (*_SUMS, "sample")
+        return {name: getattr(self.data, name).numpy() for name in names}
+
+    def restore(self, passes: int, state: NamedArrays) -> None:
+        """Be as another film was after some passes.
+
+        Args:
+            passes: how many.
+            state: what its `state` was.
+
+        Raises:
+            ValueError: it is of a film of another size; says so.
+        """
+        names = _SUMS if passes % self.turns == 0 else (*_SUMS, "sample")
+        for name in names:
+            mine, other = getattr(self.data, name), state.get(name)
+            if other is None or other.shape != mine.shape or other.dtype != np.float64:
+                raise ValueError(f"its film's {name} has another shape")
+            mine.assign(other)
+        self.passes = passes
 
     def _error_of(self, squares: FloatArray) -> FloatArray:
         """Rounds are independent estimates: σ² = Σ(x − x̄)² / (n (n − 1)) of their mean."""

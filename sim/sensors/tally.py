@@ -1,110 +1,20 @@
-"""What the passes of a run add up to on a sensor, with their scatter.
+"""What the passes of a run add up to on its sensors, with their scatter.
 
 Passes are independent replicates: the mean over them is the estimate, and their scatter its
-standard error. Of rays, more may cross than there is room for. Each crossing draws a lot in
-[0, 1), and those with a lot below p stay, with their flux divided by p; p is halved whenever they
-are too many. The lots know nothing of the rays, so that what is kept stands for all without bias.
-
-References:
-    Welford (1962), Technometrics 4, 419: running mean and sum of squared deviations.
-    Flajolet (1990), "On adaptive sampling", Computing 43, 391: thinning by a threshold that is
-    halved when the sample outgrows its room, and its freedom from bias.
+standard error.
 """
 
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 
 import scenes
 from sim.image.accuracy import Accuracy
+from sim.named_arrays import NamedArrays, part_of, prefixed
 from sim.sensors.pass_crossings import PassCrossings
+from sim.sensors.ray_store import RayStore
+from sim.sensors.replicates import Replicates
 from sim.sensors.sensor_bank import SensorBank
 
-__all__ = ["RayStore", "Replicates", "SensorTally"]
-
-FloatArray = npt.NDArray[np.float64]
-
-
-@dataclass
-class Replicates:
-    """Running mean and squared deviations of arrays of one shape.
-
-    Attributes:
-        mean: of the replicates so far.
-        squares: sum of their squared deviations.
-        count: how many there were.
-    """
-
-    mean: FloatArray
-    squares: FloatArray
-    count: int = 0
-
-    @classmethod
-    def of_shape(cls, shape: tuple[int, ...]) -> "Replicates":
-        """No replicate yet."""
-        return cls(np.zeros(shape), np.zeros(shape))
-
-    def add(self, values: FloatArray) -> None:
-        """Take in one more (Welford 1962)."""
-        self.count += 1
-        off = values - self.mean
-        self.mean += off / self.count
-        self.squares += off * (values - self.mean)
-
-    @property
-    def standard_error(self) -> FloatArray:
-        """One standard deviation of the mean; NaN from a single replicate."""
-        if self.count < 2:
-            return np.full(self.mean.shape, np.nan)
-        error: FloatArray = np.sqrt(self.squares / (self.count * (self.count - 1.0)))
-        return error
-
-
-class RayStore:
-    """The rays of one sensor, thinned to what there is room for.
-
-    Attributes:
-        kept: probability with which each ray was kept, a power of 1/2.
-        crossings: how many rays have crossed.
-        flux: flux that crossed [W], before any thinning; a replicate a pass.
-    """
-
-    def __init__(self, room: int) -> None:
-        self.room = room
-        self.kept = 1.0
-        self.crossings = 0
-        self.flux = Replicates.of_shape(())
-        self._passes: list[dict[str, npt.NDArray[Any]]] = []
-
-    def add(self, rays: dict[str, npt.NDArray[Any]]) -> None:
-        """Take in the rays of one pass; none if it is empty."""
-        fluxes = rays.get("flux", np.zeros(0))
-        number = np.full(len(fluxes), self.flux.count, dtype=np.int32)
-        self.flux.add(np.asarray(fluxes.sum()))
-        self.crossings += len(fluxes)
-        if rays:
-            self._passes.append(self._thinned({**rays, "pass_index": number}))
-        while sum(len(one["lot"]) for one in self._passes) > self.room:
-            self.kept *= 0.5
-            self._passes = [self._thinned(one) for one in self._passes]
-
-    def rays(self) -> dict[str, npt.NDArray[Any]]:
-        """All rays kept so far, by column; empty if there is none.
-
-        Their flux is a part of the mean over the passes: it adds up to what crosses.
-        """
-        if not self._passes:
-            return {}
-        found = {name: np.concatenate([one[name] for one in self._passes])
-                 for name in self._passes[0]}
-        found["flux"] = found["flux"] / (self.kept * self.flux.count)
-        return found
-
-    def _thinned(self, rays: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-        stay = rays["lot"] < self.kept
-        return rays if stay.all() else {name: column[stay] for name, column in rays.items()}
+__all__ = ["SensorTally"]
 
 
 class SensorTally:
@@ -169,3 +79,27 @@ class SensorTally:
                 mine = crossings.rays.get("sensor", np.zeros(0)) == row
                 store.add({name: one[mine] for name, one in crossings.rays.items()})
         self.totals.add(totals)
+
+    def state(self) -> NamedArrays:
+        """What it takes to go on after this pass, by name."""
+        found: NamedArrays = {}
+        for name, part in self._parts().items():
+            found |= prefixed(name, part.state())
+        return found
+
+    def restore(self, passes: int, state: NamedArrays) -> None:
+        """Be as another tally, of the same sensors, was after some passes.
+
+        Raises:
+            ValueError: it is of other sensors; says so.
+        """
+        for name, part in self._parts().items():
+            part.restore(passes, part_of(state, name))
+
+    def _parts(self) -> dict[str, Replicates | RayStore]:
+        """All that passes are added to, by name."""
+        parts: dict[str, Replicates | RayStore] = {"bins": self.bins, "totals": self.totals}
+        for row, (cells, store) in enumerate(zip(self.cells, self.stores, strict=True)):
+            parts |= {} if cells is None else {f"cells{row}": cells}
+            parts |= {} if store is None else {f"rays{row}": store}
+        return parts

@@ -12,8 +12,12 @@ EXAMPLES = [
     errors.FileFormatError("in.exr", "it is not an OpenEXR file"),
     errors.CapacityError("the photon map is full; raise or lower …"),
     errors.DeviceError("cuda:3 is not there"),
+    errors.CheckpointError("c.checkpoint", "it is of another run", (("a.b", "1", "2"),)),
+    errors.UnfinishedError("cannot write 'out.exr'; kept 3 passes"),
 ]
-BUILTINS = [ValueError, OSError, ValueError, RuntimeError, RuntimeError]
+BUILTINS = [
+    ValueError, OSError, ValueError, RuntimeError, RuntimeError, ValueError, RuntimeError,
+]
 
 
 def test_every_error_is_drawn_in_the_tree():

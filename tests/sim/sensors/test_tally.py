@@ -5,8 +5,10 @@ import pytest
 
 import scenes
 from sim.sensors.pass_crossings import PassCrossings
+from sim.sensors.ray_store import RayStore
+from sim.sensors.replicates import Replicates
 from sim.sensors.sensor_bank import SensorBank
-from sim.sensors.tally import RayStore, Replicates, SensorTally
+from sim.sensors.tally import SensorTally
 
 SHAPE = scenes.Rectangle(position=(0.0, 0.0, 0.0), size=(1.0, 1.0))
 
