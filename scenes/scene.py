@@ -64,9 +64,15 @@ class Scene(SceneModel):
     render: RenderDefaults = Field(
         default=RenderDefaults(), description="settings this scene is best rendered with"
     )
-    objects: tuple[SceneObject, ...] = Field(default=(), description="what light meets")
-    emitters: tuple[AnyEmitter, ...] = Field(default=(), description="where light comes from")
-    sensors: tuple[AnySensor, ...] = Field(default=(), description="where light is measured")
+    objects: tuple[SceneObject, ...] = Field(
+        default=(), max_length=10_000, description="what light meets"
+    )
+    emitters: tuple[AnyEmitter, ...] = Field(
+        default=(), max_length=1000, description="where light comes from"
+    )
+    sensors: tuple[AnySensor, ...] = Field(
+        default=(), max_length=1000, description="where light is measured"
+    )
 
     _source_name: str = PrivateAttr(default="scene")
     _source_text: str | None = PrivateAttr(default=None)

@@ -79,12 +79,14 @@ def _hull(vertices: tuple[tuple[float, float, float], ...]) -> Faces:
         hull = ConvexHull((corners - centre) / extent)
     except QhullError as error:
         raise ValueError("the vertices lie in one plane") from error
-    normals: list[NDArray[np.float64]] = []
+    normals, count = np.zeros((len(hull.equations), 3)), 0
     for equation in hull.equations:
         normal = equation[:3] / np.linalg.norm(equation[:3])
-        if not any(np.linalg.norm(normal - known) < _SAME_NORMAL for known in normals):
-            normals.append(normal)
-    outward = np.array(normals)
+        apart = np.linalg.norm(normals[:count] - normal, axis=1)
+        if not (apart < _SAME_NORMAL).any():
+            normals[count] = normal
+            count += 1
+    outward = normals[:count].copy()
     offsets = (corners @ outward.T).max(axis=0)
     outward.flags.writeable = offsets.flags.writeable = False  # the cache hands them out again
     return outward, offsets

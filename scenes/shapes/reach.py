@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from scenes.frames import rotation_matrix
 from scenes.shapes.convex import ConvexSolid
 from scenes.shapes.flat import Disk, FlatRectangle, Plane
 from scenes.shapes.lens import Lens
@@ -17,7 +18,7 @@ __all__ = ["close_pairs", "may_meet", "reach"]
 FloatArray = NDArray[np.float64]
 
 
-def reach(shape: Any, direction: FloatArray) -> float:
+def reach(shape: Any, direction: FloatArray) -> float:  # noqa: PLR0911
     """The most that a point of `shape` has of `direction`: max of x · d [m], infinite for planes.
 
     That of a lens is of the cylinder around it: never less than its own. So is that of a shape
@@ -30,9 +31,12 @@ def reach(shape: Any, direction: FloatArray) -> float:
     if isinstance(shape, Plane):
         across = float(np.linalg.norm(np.cross(shape.normal, direction)))
         return math.inf if across > 1e-12 else float(np.dot(shape.position, direction))
-    if isinstance(shape, ConvexSolid | Triangulated):
+    if isinstance(shape, ConvexSolid):
         return float(np.max(shape.vertices_world() @ direction))
     middle = float(np.dot(shape.position, direction))
+    if isinstance(shape, Triangulated):  # of many vertices: the direction is turned, not they
+        turned = direction @ rotation_matrix(shape.rotation_deg)
+        return middle + float(np.max(shape.local_surface().vertices @ turned))
     if isinstance(shape, FlatRectangle):
         u, v, _ = shape.frame()
         half_u, half_v = 0.5 * shape.size[0], 0.5 * shape.size[1]
