@@ -83,7 +83,7 @@ def _even_rows(rows: tuple[tuple[float, ...], ...]) -> NDArray[np.float64]:
 
 def _read_image(path: Path, name: str, info: ValidationInfo) -> NDArray[np.float64]:
     """Grey levels of an image, 0 to 1."""
-    from PIL import Image
+    from PIL import Image, UnidentifiedImageError
 
     allowed = f"an image ({', '.join(IMAGE_FORMATS)}) of at most {MAX_CELLS} pixels a side"
     try:
@@ -103,5 +103,7 @@ def _read_image(path: Path, name: str, info: ValidationInfo) -> NDArray[np.float
     except PydanticCustomError:
         raise
     except Exception as error:  # a damaged file ends in any of Python's exceptions
-        message = f"{shown(name)} cannot be read: {reason_of(error)}; allowed: {allowed}"
+        is_none = isinstance(error, UnidentifiedImageError)
+        reason = "it is no such image, or damaged" if is_none else reason_of(error)
+        message = f"{shown(name)} cannot be read: {reason}; allowed: {allowed}"
         raise refusal(Problem("file", message, name, allowed)) from None

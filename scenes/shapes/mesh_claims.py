@@ -14,6 +14,9 @@ _HEADER_BYTES = 64 * 1024
 _JSON_BYTES = 8 * 1024 * 1024
 _MOST_NODES = 10_000
 _DEEPEST = 100
+_STL_START, _STL_TRIANGLE = 84, 50
+"""Bytes of a binary STL's header, with the number of triangles last, and of each triangle."""
+
 _GLB_START = 20
 """Length of what stands before the JSON of a GLB: magic, version, length; chunk length, kind."""
 
@@ -33,6 +36,8 @@ def refuse_false_claims(content: bytes, kind: str, most_triangles: int) -> None:
         _check_ply(content, most_triangles)
     elif kind == "glb":
         _check_glb(content, most_triangles)
+    elif kind == "stl":
+        _check_stl(content)
 
 
 def _check_ply(content: bytes, most_triangles: int) -> None:
@@ -57,6 +62,17 @@ def _element(words: list[str]) -> tuple[str, int]:
     if len(words) != 3 or not words[2].isdecimal() or len(words[2]) > 20:
         raise ValueError("its header counts an element in no whole number of at most 20 digits")
     return words[1][:40], int(words[2])
+
+
+def _check_stl(content: bytes) -> None:
+    """Of a binary one, the number of its triangles says how long it is; others begin "solid"."""
+    if content.lstrip()[:5].lower() == b"solid":
+        return
+    if len(content) < _STL_START:
+        raise ValueError("it is cut off")
+    (count,) = struct.unpack_from("<I", content, _STL_START - 4)
+    if len(content) != _STL_START + _STL_TRIANGLE * count:
+        raise ValueError(f"its header claims {count} triangles, which is not what its length says")
 
 
 def _check_glb(content: bytes, most_triangles: int) -> None:

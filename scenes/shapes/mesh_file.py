@@ -84,9 +84,8 @@ def _corners(
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            scene = trimesh.load_scene(
-                io.BytesIO(content), file_type=kind, process=False, skip_materials=True
-            )
+            file = io.BytesIO(_plain(content, kind))
+            scene = trimesh.load_scene(file, file_type=kind, process=False, skip_materials=True)
             _refuse_too_many(scene)
             parts = [_part(scene, node) for node in scene.graph.nodes_geometry]
     except _TooManyError as error:
@@ -100,6 +99,13 @@ def _corners(
     if any(normals is None for _, normals in parts):
         return corners, None
     return corners, np.concatenate([normals for _, normals in parts])
+
+
+def _plain(content: bytes, kind: str) -> bytes:
+    """Text in UTF-8, whatever it was in: its numbers are ASCII, and all else does not count."""
+    if kind == "obj" or (kind == "stl" and content.lstrip()[:5].lower() == b"solid"):
+        return content.decode("latin-1").encode("utf-8")
+    return content
 
 
 class _TooManyError(ValueError):
