@@ -34,7 +34,8 @@ _Transmittance = Annotated[Number, Field(gt=0, le=1)]
 
 _Wavelengths = Annotated[
     tuple[Wavelength, ...],
-    Field(min_length=2, max_length=10_000, description="wavelengths, strictly increasing [nm]"),
+    Field(min_length=2, max_length=10_000, fail_fast=True,
+    description="wavelengths, strictly increasing [nm]"),
 ]
 
 
@@ -44,7 +45,7 @@ class CoefficientTable(SceneModel):
     wavelength_nm: _Wavelengths
     values: tuple[InverseLength, ...] = Field(
         min_length=2,
-        max_length=10_000,
+        max_length=10_000, fail_fast=True,
         description="coefficient at each wavelength, 0 or more [1 / length unit]",
     )
 
@@ -59,7 +60,8 @@ class ExtinctionTable(SceneModel):
 
     wavelength_nm: _Wavelengths
     values: tuple[_Extinction, ...] = Field(
-        min_length=2, max_length=10_000, description="k at each wavelength, 0 or more"
+        min_length=2, max_length=10_000, fail_fast=True,
+        description="k at each wavelength, 0 or more"
     )
 
     @model_validator(mode="after")
@@ -74,7 +76,7 @@ class TransmittanceTable(SceneModel):
     wavelength_nm: _Wavelengths
     values: tuple[_Transmittance, ...] = Field(
         min_length=2,
-        max_length=10_000,
+        max_length=10_000, fail_fast=True,
         description="internal transmittance at each wavelength, above 0 and at most 1",
     )
 

@@ -18,7 +18,7 @@ from scenes.emitters import RectangleLamp, SphereLamp
 from scenes.errors import Problem
 from scenes.fields import UNITS_PER_METRE
 from scenes.materials import Dielectric
-from scenes.media import resolve_medium
+from scenes.media import SellmeierMedium, resolve_medium
 from scenes.places import key_path
 from scenes.scene import Scene
 from scenes.shapes import FlatRectangle, Plane
@@ -115,7 +115,7 @@ def _sizes(scene: Scene, data: Mapping[str, Any]) -> Iterator[Problem]:
     scale = UNITS_PER_METRE[unit]
     stated = "length_unit" in data
     other = _OTHER[unit]
-    guess = f"{_NAME_OF[other]}, length_unit = {other!r}"
+    guess = f'{_NAME_OF[other]}, length_unit = "{other}"'
     for index, one in enumerate(scene.objects):
         if isinstance(one.shape, Plane):
             continue
@@ -124,19 +124,18 @@ def _sizes(scene: Scene, data: Mapping[str, Any]) -> Iterator[Problem]:
         is_small = size_m < _SMALLEST_M and unit == "mm"
         # In a file in metres that is too small for a bench, millimetres would be smaller still.
         if is_large or is_small:
-            why = f"{one.shape.type} measures {size_m * scale:g} {unit} across"
-            yield _doubt(f"objects[{index}].shape", f"in {_NAME_OF[unit]}", guess, why)
+            across = f"{size_m * scale:.3g} {unit} across"
+            yield _doubt(f"objects[{index}].shape", across, guess)
         elif size_m < _SMALLEST_M and not stated:
-            wanted = f"{size_m * 1000.0:g} m; if not, state length_unit = 'm'"
-            why = f"{one.shape.type} measures {size_m:g} m across"
-            yield _doubt(f"objects[{index}].shape", "in metres", wanted, why)
+            wanted = f"{size_m * 1000.0:.3g} m"
+            why = 'if it is meant, state length_unit = "m"'
+            yield _doubt(f"objects[{index}].shape", f"{size_m:.3g} m across", wanted, why)
     for index, lamp in enumerate(scene.emitters):
         if not isinstance(lamp, SphereLamp | RectangleLamp) or stated:
             continue
         size_m = _longest_side(lamp) if isinstance(lamp, RectangleLamp) else 2.0 * lamp.radius
         if size_m > _LARGEST_M:
-            why = f"the lamp measures {size_m:g} m across"
-            yield _doubt(f"emitters[{index}]", "in metres", guess, why)
+            yield _doubt(f"emitters[{index}]", f"{size_m:.3g} m across", guess)
     camera = scene.camera
     if camera is not None and camera.sensor_height > 1.0:
         height = camera.sensor_height
@@ -199,8 +198,8 @@ def _angstroms(entries: list[_Entry]) -> Iterator[Problem]:
             table = one.path.rpartition(".")[0]
             if table not in told:
                 told.add(table)
-                why = "in nanometres that is infrared"
-                yield _doubt(one.path, one.value, f"{one.value / 10.0:g} (ångströms)", why)
+                why = "infrared, in nanometres"
+                yield _doubt(one.path, one.value, f"{one.value / 10.0:g}, from ångströms", why)
 
 
 def _exposures(entries: list[_Entry]) -> Iterator[Problem]:
@@ -233,11 +232,13 @@ def _indices(scene: Scene) -> Iterator[Problem]:
         except SpectraError:
             continue
         if 0.0 < abbe_number < _LEAST_ABBE_NUMBER:
-            is_sellmeier = spec.type == "sellmeier"
-            guess = "the squares, λ² - C with C in µm²" if is_sellmeier else "another unit"
-            key = f"{path}.c_um2" if is_sellmeier else path
-            why = f"Abbe number {abbe_number:.2g}, where no known matter is below 9"
-            yield _doubt(key, "as given", guess, why)
+            why = f"Abbe number {abbe_number:.2g}, and no transparent matter is below 9"
+            if isinstance(spec, SellmeierMedium):
+                squares = [float(f"{c * c:.6g}") for c in spec.c_um2]
+                guess = f"{squares}, C squared"
+                yield _doubt(f"{path}.c_um2", list(spec.c_um2), guess, why)
+            else:
+                yield _doubt(path, "as given", "coefficients in another unit than µm", why)
 
 
 def _remoteness(scene: Scene) -> Iterator[Problem]:
@@ -253,6 +254,6 @@ def _remoteness(scene: Scene) -> Iterator[Problem]:
     distance = float(np.linalg.norm(np.subtract(camera.position, centre)))
     seen = 2.0 * math.degrees(math.atan2(reach, distance))
     if seen < 0.01 * camera.fov_deg:
-        why = f"the scene is {2.0 * reach:.3g} m across and {distance:.3g} m from the camera"
-        where = "a position in the unit of the other lengths"
-        yield _doubt("camera.position", "as given", where, why)
+        why = f"all there is, {2.0 * reach:.3g} m across, fills less than 1 % of the picture"
+        where = "one in the unit of the other lengths"
+        yield _doubt("camera.position", f"{distance:.3g} m away", where, why)

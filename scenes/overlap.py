@@ -16,14 +16,20 @@ from scenes.materials import Dielectric
 from scenes.objects import SceneObject
 from scenes.shapes import Plane
 from scenes.shapes.depth import height_above
-from scenes.shapes.reach import close_pairs, may_meet
+from scenes.shapes.reach import close_pairs, count_close_pairs, may_meet
 
-__all__ = ["overlap_depth", "overlap_problems"]
+__all__ = ["MAX_CLOSE_PAIRS", "crowd_problems", "overlap_depth", "overlap_problems"]
 
 FloatArray = NDArray[np.float64]
 
 _TOUCH = 1e-9
 """Solids that enter one another by less than this part of the smaller one's size only touch."""
+
+MAX_CLOSE_PAIRS = 100_000
+"""Each pair takes some tenths of a millisecond."""
+
+_MOST_CLASHES = 20
+"""Solids in one place that are told of."""
 
 _CELLS = 12
 _STARTS = 8
@@ -36,8 +42,24 @@ def overlap_problems(objects: Mapping[int, SceneObject]) -> list[Problem]:
         (index, one) for index, one in objects.items() if isinstance(one.material, Dielectric)
     ]
     pairs = close_pairs([one.shape for _, one in solids])
-    problems = [_clash(*solids[first], *solids[second]) for first, second in pairs]
-    return [problem for problem in problems if problem is not None]
+    problems: list[Problem] = []
+    for first, second in pairs:
+        problem = _clash(*solids[first], *solids[second])
+        if problem is not None:
+            problems.append(problem)
+            if len(problems) == _MOST_CLASHES:
+                break
+    return problems
+
+
+def crowd_problems(objects: Mapping[int, SceneObject]) -> list[Problem]:
+    """More objects in one place than can be looked at pair by pair."""
+    pairs = count_close_pairs([one.shape for one in objects.values()])
+    if pairs <= MAX_CLOSE_PAIRS:
+        return []
+    allowed = f"at most {MAX_CLOSE_PAIRS} pairs of objects whose bounding spheres meet"
+    return [Problem("objects", f"{pairs} pairs are close to each other; allowed: {allowed}", None,
+                    allowed)]  # fmt: skip
 
 
 def _clash(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem | None:

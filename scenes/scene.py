@@ -13,7 +13,7 @@ from pydantic import (
 )
 
 from scenes.camera import Camera
-from scenes.checks import cross_problems
+from scenes.checks import MOST_OBJECTS, cross_problems
 from scenes.emitters import AnyEmitter, Glowing
 from scenes.errors import Problem, SceneError, refusal
 from scenes.fields import Count, Size, is_file
@@ -65,7 +65,7 @@ class Scene(SceneModel):
         default=RenderDefaults(), description="settings this scene is best rendered with"
     )
     objects: tuple[SceneObject, ...] = Field(
-        default=(), max_length=10_000, description="what light meets"
+        default=(), max_length=MOST_OBJECTS, description="what light meets"
     )
     emitters: tuple[AnyEmitter, ...] = Field(
         default=(), max_length=1000, description="where light comes from"

@@ -28,7 +28,11 @@ IMAGE_FORMATS: Final = ("BMP", "GIF", "JPEG", "PNG", "PPM", "TIFF", "WEBP")
 _MAX_BYTES = 64 * 1024 * 1024
 
 _Row = Annotated[
-    tuple[Annotated[Number, Field(ge=0, le=1)], ...], Field(min_length=1, max_length=MAX_CELLS)
+    tuple[Annotated[Number, Field(ge=0, le=1)], ...],
+    Field(min_length=1, max_length=MAX_CELLS, fail_fast=True),
+]
+_Rows = Annotated[
+    tuple[_Row, ...], Field(min_length=1, max_length=MAX_CELLS, fail_fast=True)
 ]
 
 
@@ -38,7 +42,7 @@ class Mask(SceneModel):
     The emitter's flux is that of the light that comes through.
     """
 
-    values: Annotated[tuple[_Row, ...], Field(min_length=1, max_length=MAX_CELLS)] | None = Field(
+    values: _Rows | None = Field(
         default=None,
         description="transmittances of the cells, 0 to 1, in rows of equal length, the first on"
         " top, at most 2048 a side",

@@ -24,7 +24,10 @@ _MAX_CELLS = 1000
 
 FloatArray = NDArray[np.float64]
 
-_Row = Annotated[tuple[Coordinate, ...], Field(min_length=2, max_length=_MAX_CELLS + 1)]
+_Row = Annotated[
+    tuple[Coordinate, ...], Field(min_length=2, max_length=_MAX_CELLS + 1, fail_fast=True)
+]
+_Rows = Annotated[tuple[_Row, ...], Field(min_length=2, max_length=_MAX_CELLS + 1, fail_fast=True)]
 _Cells = Annotated[int, Field(strict=True, ge=1, le=_MAX_CELLS)]
 
 
@@ -50,9 +53,7 @@ class HeightField(Triangulated):
         default="heightfield", description="heights over a rectangle: water, a relief"
     )
     size: tuple[Size, Size] = Field(description="[along x, along z] (lengths)")
-    heights: (
-        Annotated[tuple[_Row, ...], Field(min_length=2, max_length=_MAX_CELLS + 1)] | None
-    ) = Field(
+    heights: _Rows | None = Field(
         default=None,
         description="rows of heights (lengths), the rows from -z to +z, each from -x to +x",
     )

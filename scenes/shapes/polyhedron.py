@@ -21,7 +21,9 @@ _ON_HULL = 1e-9
 _SAME_NORMAL = 1e-7
 """Normals closer than this belong to one face that the hull was given in triangles."""
 
-_Vertices = Annotated[tuple[Position, ...], Field(min_length=4, max_length=_MAX_VERTICES)]
+_Vertices = Annotated[
+    tuple[Position, ...], Field(min_length=4, max_length=_MAX_VERTICES, fail_fast=True)
+]
 
 
 class Polyhedron(ConvexSolid):

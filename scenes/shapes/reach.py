@@ -13,7 +13,7 @@ from scenes.shapes.flat import Disk, FlatRectangle, Plane
 from scenes.shapes.lens import Lens
 from scenes.shapes.triangulated import Triangulated
 
-__all__ = ["close_pairs", "may_meet", "reach"]
+__all__ = ["close_pairs", "count_close_pairs", "may_meet", "reach"]
 
 FloatArray = NDArray[np.float64]
 
@@ -60,14 +60,25 @@ def close_pairs(shapes: Sequence[Any], slack: float = 0.0) -> Iterator[tuple[int
 
     It sorts out nearly all pairs of a scene of many objects at little cost.
     """
+    for i, close in enumerate(_close_to_each(shapes, slack)):
+        for j in close:
+            yield i, i + 1 + int(j)
+
+
+def count_close_pairs(shapes: Sequence[Any]) -> int:
+    """How many pairs of shapes have bounding spheres that meet."""
+    return sum(len(close) for close in _close_to_each(shapes, 0.0))
+
+
+def _close_to_each(shapes: Sequence[Any], slack: float) -> Iterator[NDArray[np.intp]]:
+    """Of each shape but the last, the close ones among those behind it."""
     centres, radii = np.zeros((len(shapes), 3)), np.full(len(shapes), np.inf)
     for index, shape in enumerate(shapes):
         if not isinstance(shape, Plane):
             centres[index], radii[index] = shape.bounding_sphere()
     for i in range(len(shapes) - 1):
         apart = np.linalg.norm(centres[i + 1 :] - centres[i], axis=1)
-        for j in np.flatnonzero(apart - radii[i + 1 :] - radii[i] <= slack):
-            yield i, i + 1 + int(j)
+        yield np.flatnonzero(apart - radii[i + 1 :] - radii[i] <= slack)
 
 
 def may_meet(one: Any, other: Any, slack: float = 0.0) -> bool:

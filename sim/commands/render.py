@@ -17,7 +17,15 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sim.commands.arguments import count, duration, exr_file, fraction, png_file
+from sim.commands.arguments import (
+    add_scene_arguments,
+    count,
+    duration,
+    exr_file,
+    fraction,
+    load_scene,
+    png_file,
+)
 
 if TYPE_CHECKING:
     from scenes import Scene
@@ -33,7 +41,7 @@ SUMMARY = "render a scene to a spectral EXR and a PNG"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
-    parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
+    add_scene_arguments(parser)
     parser.add_argument("-o", "--output", type=exr_file, metavar="OUT.exr",
                         help="spectral EXR (default: the scene's name, in this folder)")
     parser.add_argument("--png", type=png_file, metavar="OUT.png",
@@ -94,7 +102,6 @@ _stops.__name__ = "number of stops"
 
 def run(arguments: argparse.Namespace) -> None:
     """Render, then write the files; outputs, settings and scene are checked before."""
-    from scenes import load
     from sim.atomic_file import check_writable, write_whole
     from sim.commands.sensor_output import check_sensor_files, write_readings
     from sim.settings import RenderSettings
@@ -103,7 +110,7 @@ def run(arguments: argparse.Namespace) -> None:
     names = {field.name for field in dataclasses.fields(RenderSettings)}
     given = {name: value for name, value in vars(arguments).items() if name in names}
     settings = RenderSettings(**given)
-    scene = load(arguments.scene)
+    scene = load_scene(arguments)
     if arguments.photon_map:
         _draw_photons(scene, settings, arguments.png or Path(f"{scene.source_name}.photons.png"))
         return
