@@ -44,7 +44,11 @@ def problems_of(error: ValidationError, model: type[BaseModel]) -> tuple[Problem
         a thousand errors the rest is counted only.
     """
     found: dict[Problem, None] = {}
-    for details in error.errors(include_url=False)[:_MOST_ERRORS]:
+    told = error.errors(include_url=False)[:_MOST_ERRORS]
+    wrong_inside = {details["loc"][:-1] for details in told}
+    for details in told:
+        if details["type"] == "too_short" and details["loc"] in wrong_inside:
+            continue  # an array is left at its first wrong element, and only seems too short
         place = Place.at(details["loc"], model)
         found.update(dict.fromkeys(_problems(details, place)))
     more = error.error_count() - _MOST_ERRORS
