@@ -20,6 +20,7 @@ BUDGET_KEY: Final = "budget"
 LIMITS: Final[Mapping[str, int]] = MappingProxyType(
     {
         "triangles": 1 << 21,
+        "pairs of a polyhedron's corners": 1 << 24,
         "mask cells": 1 << 23,
         "samples of waves": 1 << 25,
         "bytes of other files": 1 << 27,

@@ -5,8 +5,9 @@ from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 
+from scenes.budget import charge
 from scenes.errors import Problem, refusal
 from scenes.fields import MIN_SIZE_M, Position
 from scenes.shapes.convex import ConvexSolid, Faces
@@ -43,7 +44,8 @@ class Polyhedron(ConvexSolid):
         return np.array(self.vertices)
 
     @model_validator(mode="after")
-    def _is_convex(self) -> Self:
+    def _is_convex(self, info: ValidationInfo) -> Self:
+        charge(info, "pairs of a polyhedron's corners", len(self.vertices) ** 2, "vertices")
         try:
             normals, offsets = _hull(self.vertices)
         except ValueError:

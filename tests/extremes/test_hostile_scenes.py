@@ -2,6 +2,7 @@
 
 import contextlib
 import importlib.util
+import math
 import os
 import sys
 import time
@@ -52,6 +53,13 @@ def test_fuzzed_files_are_read_or_refused(tool, kind) -> None:
     assert len(told) == 60
 
 
+ROUND = [
+    [math.cos(2.4 * i) * math.sqrt(1 - z * z), math.sin(2.4 * i) * math.sqrt(1 - z * z), z]
+    for i in range(512)
+    for z in [(i - 255.5) / 256]
+]
+"""Corners of a ball that are all on their hull: a spiral by nearly the golden angle."""
+
 HOSTILE = {
     "a dotted key without end": (".".join(["a"] * 100_000) + " = 1", "nested too deeply"),
     "a header without end": ("[" + ".".join(['"a"'] * 100_000) + "]", "nested too deeply"),
@@ -64,7 +72,7 @@ HOSTILE = {
         f'spectrum = {{ type = "table", values = [1, 1], wavelength_nm = [{"true," * 200_000}] }}',
         "must be a number",
     ),
-    "objects without end": ("[[objects]]\n" * 10_000, "at most 4096 elements"),
+    "objects without end": ("[[objects]]\n" * 10_000, "… and 901 more"),
     "too large a film": (
         "[film]\nwidth = 16384\nheight = 16384\nbands = 100",
         "at most 268435456 samples",
@@ -82,6 +90,14 @@ HOSTILE = {
         "position = [0, 0, 0], size = [1, 1], cells = [1000, 1000],"
         "waves = [{ amplitude = 0.1, period = 1 }] }",
         "at most 2097152 triangles in all of the scene",
+    ),
+    "corners without end": (
+        "".join(
+            f'[[objects]]\nmaterial = {{ type = "absorber" }}\nshape = {{ type = "polyhedron",'
+            f"position = [{3 * i}, 0, 0], vertices = {ROUND} }}\n"
+            for i in range(65)
+        ),
+        "at most 16777216 pairs of a polyhedron's corners",
     ),
     "a crowd": (
         "".join(
