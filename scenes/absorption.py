@@ -5,7 +5,7 @@ from typing import Annotated, Final, Literal, Self
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from scenes.columns import refuse_uneven_columns
-from scenes.errors import Problem, refusal
+from scenes.errors import Problem, refusal, shown
 from scenes.fields import WAVELENGTH_RANGE_NM, InverseLength, Number, Size, Wavelength
 from scenes.model import SceneModel, plain_or_table
 from spectra import Absorption
@@ -214,7 +214,7 @@ PUBLISHED: Final = "published"
 def _known_word(word: str) -> str:
     if word != PUBLISHED:
         allowed = f"{PUBLISHED!r}, or a table that describes the absorption"
-        raise refusal(Problem("", f"must be {allowed}, is {word!r}", word, allowed))
+        raise refusal(Problem("", f"must be {allowed}, is {shown(word)}", word, allowed))
     return word
 
 
