@@ -19,6 +19,7 @@ from scenes.absorption import (
     TransmittanceTable,
 )
 from scenes.camera import Camera
+from scenes.doubts import SceneWarning
 from scenes.emission import Blackbody, Laser, Lines, SpectrumTable
 from scenes.emitters import (
     Beam,
@@ -111,6 +112,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "SceneObject",
+    "SceneWarning",
     "SellmeierMedium",
     "SensorExposure",
     "SlitProfile",

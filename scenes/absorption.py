@@ -5,7 +5,7 @@ from typing import Annotated, Final, Literal, Self
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from scenes.columns import refuse_uneven_columns
-from scenes.errors import Problem, refusal
+from scenes.errors import Problem, refusal, shown
 from scenes.fields import WAVELENGTH_RANGE_NM, InverseLength, Number, Size, Wavelength
 from scenes.model import SceneModel, plain_or_table
 from spectra import Absorption
@@ -34,7 +34,8 @@ _Transmittance = Annotated[Number, Field(gt=0, le=1)]
 
 _Wavelengths = Annotated[
     tuple[Wavelength, ...],
-    Field(min_length=2, max_length=10_000, description="wavelengths, strictly increasing [nm]"),
+    Field(min_length=2, max_length=10_000, fail_fast=True,
+    description="wavelengths, strictly increasing [nm]"),
 ]
 
 
@@ -44,7 +45,7 @@ class CoefficientTable(SceneModel):
     wavelength_nm: _Wavelengths
     values: tuple[InverseLength, ...] = Field(
         min_length=2,
-        max_length=10_000,
+        max_length=10_000, fail_fast=True,
         description="coefficient at each wavelength, 0 or more [1 / length unit]",
     )
 
@@ -59,7 +60,8 @@ class ExtinctionTable(SceneModel):
 
     wavelength_nm: _Wavelengths
     values: tuple[_Extinction, ...] = Field(
-        min_length=2, max_length=10_000, description="k at each wavelength, 0 or more"
+        min_length=2, max_length=10_000, fail_fast=True,
+        description="k at each wavelength, 0 or more"
     )
 
     @model_validator(mode="after")
@@ -74,7 +76,7 @@ class TransmittanceTable(SceneModel):
     wavelength_nm: _Wavelengths
     values: tuple[_Transmittance, ...] = Field(
         min_length=2,
-        max_length=10_000,
+        max_length=10_000, fail_fast=True,
         description="internal transmittance at each wavelength, above 0 and at most 1",
     )
 
@@ -212,7 +214,7 @@ PUBLISHED: Final = "published"
 def _known_word(word: str) -> str:
     if word != PUBLISHED:
         allowed = f"{PUBLISHED!r}, or a table that describes the absorption"
-        raise refusal(Problem("", f"must be {allowed}, is {word!r}", word, allowed))
+        raise refusal(Problem("", f"must be {allowed}, is {shown(word)}", word, allowed))
     return word
 
 

@@ -15,11 +15,14 @@ from scenes.flush import flush_problems
 from scenes.materials import Dielectric, Metal
 from scenes.media import AMBIENT_NAMES, AmbientSpec, DescribedMedium, resolve_medium
 from scenes.objects import SceneObject
-from scenes.overlap import overlap_problems
+from scenes.overlap import crowd_problems, overlap_problems
 from scenes.sensors import AnySensor, Sensor, bin_problems
 from spectra import Medium, WavelengthOutOfRange, air_index
 
-__all__ = ["cross_problems", "cross_problems_of_valid_parts", "used_ranges_nm"]
+__all__ = ["MOST_OBJECTS", "cross_problems", "cross_problems_of_valid_parts", "used_ranges_nm"]
+
+MOST_OBJECTS = 4096
+"""In a scene; also the most entries of any list that are looked at when a file is wrong."""
 
 Interval = tuple[float, float]
 
@@ -63,14 +66,14 @@ def cross_problems(
         emitters: Emitters by their index in the file.
         sensors: Sensors by their index in the file.
     """
+    crowd = crowd_problems(objects)
     return [
         *_repeated_names("objects", {i: one.name for i, one in objects.items()}),
         *_repeated_names("emitters", {i: one.name for i, one in emitters.items()}),
         *_repeated_names("sensors", {i: one.name for i, one in sensors.items()}),
         *bin_problems(film, sensors),
         *_range_problems(used_ranges_nm(film, list(emitters.values())), ambient, objects),
-        *overlap_problems(objects),
-        *flush_problems(objects),
+        *(crowd or [*overlap_problems(objects), *flush_problems(objects)]),
         *endless_problems(ambient, objects, emitters),
     ]
 
@@ -199,6 +202,6 @@ def _valid(kind: TypeAdapter[Any], value: object, context: Mapping[str, Any]) ->
 def _valid_entries(
     kind: TypeAdapter[Any], values: object, context: Mapping[str, Any]
 ) -> dict[int, Any]:
-    entries = values if isinstance(values, list) else []
+    entries = values if isinstance(values, list) and len(values) <= MOST_OBJECTS else []
     checked = {index: _valid(kind, value, context) for index, value in enumerate(entries)}
     return {index: one for index, one in checked.items() if one is not None}

@@ -84,10 +84,11 @@ class Lines(DescribedSpectrum):
 
     type: Literal["lines"] = Field(default="lines", description="sharp lines")
     wavelength_nm: tuple[Wavelength, ...] = Field(
-        min_length=1, max_length=1000, description="wavelengths, strictly increasing [nm]"
+        min_length=1, max_length=1000, fail_fast=True,
+        description="wavelengths, strictly increasing [nm]"
     )
     weights: tuple[NonNegative, ...] = Field(
-        min_length=1, max_length=1000, description="relative flux of each line"
+        min_length=1, max_length=1000, fail_fast=True, description="relative flux of each line"
     )
 
     @model_validator(mode="after")
@@ -110,10 +111,12 @@ class SpectrumTable(DescribedSpectrum):
 
     type: Literal["table"] = Field(default="table", description="a table of the spectrum")
     wavelength_nm: tuple[Wavelength, ...] = Field(
-        min_length=2, max_length=10_000, description="wavelengths, strictly increasing [nm]"
+        min_length=2, max_length=10_000, fail_fast=True,
+        description="wavelengths, strictly increasing [nm]"
     )
     values: tuple[NonNegative, ...] = Field(
-        min_length=2, max_length=10_000, description="relative flux per nm at each wavelength"
+        min_length=2, max_length=10_000, fail_fast=True,
+        description="relative flux per nm at each wavelength"
     )
 
     @model_validator(mode="after")

@@ -14,10 +14,14 @@ from dataclasses import dataclass, field
 
 from pydantic_core import PydanticCustomError
 
-__all__ = ["Problem", "SceneError", "nearest_names", "refusal", "shown"]
+__all__ = ["Problem", "SceneError", "nearest_names", "reason_of", "refusal", "shown"]
 
 PROBLEM_ERROR_TYPE = "scene_problem"
 """Type of the pydantic errors that carry our own `Problem`s in their context."""
+
+_MOST_LINES = 100
+_LONGEST_NAME = 100
+_LONGEST_REASON = 300
 
 _short_repr = reprlib.Repr()
 _short_repr.maxstring = _short_repr.maxother = _short_repr.maxlong = 80
@@ -50,7 +54,7 @@ class Problem:
 
 
 class SceneError(ValueError):
-    """A scene that cannot be used; `str()` has one line for each problem.
+    """A scene that cannot be used; `str()` has one line for each of the first 100 problems.
 
     Attributes:
         source: What was being read: a file's path, a gallery name, or a model's name.
@@ -67,7 +71,9 @@ class SceneError(ValueError):
         count = len(self.problems)
         source = self.source if self.source.isprintable() else shown(self.source)
         header = f"{source}: {count} problem{'' if count == 1 else 's'}"
-        return "\n".join([header, *(f"  {problem}" for problem in self.problems)])
+        lines = [f"  {problem}" for problem in self.problems[:_MOST_LINES]]
+        rest = [f"  … and {count - _MOST_LINES} more"] if count > _MOST_LINES else []
+        return "\n".join([header, *lines, *rest])
 
 
 def refusal(*problems: Problem) -> PydanticCustomError:
@@ -82,6 +88,8 @@ def refusal(*problems: Problem) -> PydanticCustomError:
 
 def nearest_names(name: str, allowed: Iterable[str], *, count: int = 3) -> list[str]:
     """The allowed names most like `name`, letter case aside, best first (may be empty)."""
+    if len(name) > _LONGEST_NAME:
+        return []
     by_folded: dict[str, str] = {candidate.casefold(): candidate for candidate in allowed}
     matches = difflib.get_close_matches(name.casefold(), by_folded, n=count, cutoff=0.5)
     return [by_folded[match] for match in matches]
@@ -93,3 +101,11 @@ def shown(value: object) -> str:
         return _short_repr.repr(value)
     except ValueError:  # an integer of more digits than Python agrees to print
         return "a huge number"
+
+
+def reason_of(error: Exception) -> str:
+    """Why a file cannot be used, for a message: on one line, and not the file's whole content."""
+    told = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    text = " ".join(told.split()) or type(error).__name__
+    printable = "".join(one if one.isprintable() else "\N{REPLACEMENT CHARACTER}" for one in text)
+    return printable if len(printable) <= _LONGEST_REASON else f"{printable[:_LONGEST_REASON]}…"

@@ -42,6 +42,7 @@ __all__ = [
     "folder_of",
     "is_file",
     "length_text",
+    "may_look_outside",
     "metres",
     "unit_context",
 ]
@@ -66,16 +67,21 @@ WAVELENGTH_RANGE_NM: Final = (10.0, 1e6)
 
 _CONTEXT_KEY = "length_unit"
 _FOLDER_KEY = "folder"
+_OUTSIDE_KEY = "allow_outside"
 
 
-def unit_context(length_unit: str, folder: Path | None = None) -> dict[str, Any]:
+def unit_context(
+    length_unit: str, folder: Path | None = None, *, allow_outside: bool = False
+) -> dict[str, Any]:
     """The validation context of a file.
 
     Args:
         length_unit: of its lengths, "m" or "mm".
         folder: where the files that it names are; None: the current folder.
+        allow_outside: whether it may name files outside that folder.
     """
-    return {_CONTEXT_KEY: length_unit, _FOLDER_KEY: folder or Path()}
+    where = {_FOLDER_KEY: folder or Path(), _OUTSIDE_KEY: allow_outside}
+    return {_CONTEXT_KEY: length_unit, **where}
 
 
 def is_file(info: ValidationInfo) -> bool:
@@ -86,6 +92,11 @@ def is_file(info: ValidationInfo) -> bool:
 def folder_of(info: ValidationInfo) -> Path | None:
     """The folder of the file that is being read; None for a model built in Python."""
     return Path(info.context[_FOLDER_KEY]) if info.context and is_file(info) else None
+
+
+def may_look_outside(info: ValidationInfo) -> bool:
+    """Whether the file that is being read may name files outside its folder."""
+    return bool(info.context and info.context.get(_OUTSIDE_KEY))
 
 
 def _unit(info: ValidationInfo) -> str:
@@ -160,12 +171,20 @@ def _normalised(direction: tuple[float, float, float]) -> tuple[float, float, fl
     return (x / norm, y / norm, z / norm)
 
 
+_LOOKS_LIKE = (("micrometres", 1e-3, 0.1, 10.0), ("metres", 1e-9, 1e-7, 1e-5))
+"""Units that wavelengths are given in by mistake: their size per nm, and what values then are."""
+
+
 def _plausible_wavelength_nm(wavelength_nm: float) -> float:
     lowest, highest = WAVELENGTH_RANGE_NM
     if lowest <= wavelength_nm <= highest:
         return wavelength_nm
     allowed = f"{lowest:g} to {highest:g} nm"
-    looks = f" ({wavelength_nm:g} looks like micrometres)" if 0.1 <= wavelength_nm < lowest else ""
+    looks = ""
+    for unit, per_nm, shortest, longest in _LOOKS_LIKE:
+        if shortest <= wavelength_nm < longest:
+            meant = f"{wavelength_nm / per_nm:g} nm"
+            looks = f" ({wavelength_nm:g} looks like {unit}; did you mean {meant}?)"
     message = f"must be {allowed}, is {wavelength_nm:g}{looks}"
     raise refusal(Problem("", message, wavelength_nm, allowed))
 

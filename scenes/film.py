@@ -16,6 +16,7 @@ __all__ = ["Film"]
 
 _MAX_PIXELS = 16384
 _MAX_BANDS = 1024
+_MAX_SAMPLES = 1 << 28
 _SINGLE_BAND_WIDTH_NM = 10.0
 _SPACING_TOLERANCE = 1e-9
 
@@ -25,7 +26,10 @@ _Pixels = Annotated[int, Strict(), Field(ge=1, le=_MAX_PIXELS)]
 class Film(SceneModel):
     """A rectangle of pixels, each with the same evenly spaced, touching bands of wavelength."""
 
-    width: _Pixels = Field(default=768, description="pixels in a row, 1 to 16384")
+    width: _Pixels = Field(
+        default=768,
+        description="pixels in a row, 1 to 16384; width × height × bands is at most 2^28",
+    )
     height: _Pixels = Field(default=512, description="rows of pixels, 1 to 16384")
     first_nm: Wavelength = Field(default=400.0, description="centre of the first band [nm]")
     last_nm: Wavelength = Field(default=700.0, description="centre of the last band [nm]")
@@ -73,6 +77,16 @@ class Film(SceneModel):
         half = 0.5 * self.spacing_nm
         centres = self.centres_nm
         return np.linspace(centres[0] - half, centres[-1] + half, self.bands + 1)
+
+    @model_validator(mode="after")
+    def _fits_into_memory(self) -> Self:
+        samples = self.width * self.height * self.bands
+        if samples > _MAX_SAMPLES:
+            allowed = f"at most {_MAX_SAMPLES} samples, width × height × bands"
+            message = f"{self.width} × {self.height} pixels × {self.bands} bands make {samples}"
+            message += f" samples; allowed: {allowed}"
+            raise refusal(Problem("", message, None, allowed))
+        return self
 
     @model_validator(mode="after")
     def _bands_make_sense(self) -> Self:

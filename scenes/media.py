@@ -152,10 +152,12 @@ class TableMedium(DescribedMedium):
 
     type: Literal["table"] = Field(default="table", description="a table of the index")
     wavelength_nm: tuple[Wavelength, ...] = Field(
-        min_length=2, max_length=10_000, description="wavelengths, strictly increasing [nm]"
+        min_length=2, max_length=10_000, fail_fast=True,
+        description="wavelengths, strictly increasing [nm]"
     )
     eta: tuple[_Index, ...] = Field(
-        min_length=2, max_length=10_000, description="refractive index at each wavelength"
+        min_length=2, max_length=10_000, fail_fast=True,
+        description="refractive index at each wavelength"
     )
 
     @model_validator(mode="after")

@@ -19,14 +19,16 @@ class MetalTable(SceneModel):
     """A complex index n + ik against wavelength, linear between the entries."""
 
     wavelength_nm: tuple[Wavelength, ...] = Field(
-        min_length=2, max_length=10_000, description="wavelengths, strictly increasing [nm]"
+        min_length=2, max_length=10_000, fail_fast=True,
+        description="wavelengths, strictly increasing [nm]"
     )
     n: tuple[Annotated[Number, Field(gt=0, le=_LARGEST_INDEX)], ...] = Field(
-        min_length=2, max_length=10_000, description="real part of the index at each wavelength"
+        min_length=2, max_length=10_000, fail_fast=True,
+        description="real part of the index at each wavelength"
     )
     k: tuple[Annotated[Number, Field(ge=0, le=_LARGEST_INDEX)], ...] = Field(
         min_length=2,
-        max_length=10_000,
+        max_length=10_000, fail_fast=True,
         description="imaginary part at each wavelength, the extinction coefficient, 0 or more",
     )
     source: str = Field(default="described in the scene", description="where the numbers come from")

@@ -1,8 +1,8 @@
 """Files that a scene names: found beside the scene's own file, and nowhere else.
 
 A scene file from somebody else must not read what lies elsewhere on the disk, so what it names is
-relative to its own folder and stays inside it. A model built in Python is the program's own word:
-there a path may be any, relative to the current folder.
+relative to its own folder and stays inside it, unless who loads it allows more. A model built in
+Python is the program's own word: there a path may be any, relative to the current folder.
 """
 
 from pathlib import Path
@@ -11,7 +11,7 @@ from pydantic import ValidationInfo
 from pydantic_core import PydanticCustomError
 
 from scenes.errors import Problem, refusal, shown
-from scenes.fields import folder_of
+from scenes.fields import folder_of, may_look_outside
 
 __all__ = ["nearby_file"]
 
@@ -31,6 +31,8 @@ def nearby_file(name: str, info: ValidationInfo, *, field: str = "file") -> Path
     try:
         if folder is None:
             path = Path(name)
+        elif may_look_outside(info):
+            path = folder / name
         else:
             path = _inside(folder, name, field)
         if path.is_file():
@@ -49,7 +51,7 @@ def _inside(folder: Path, name: str, field: str) -> Path:
     root = folder.resolve()
     path = (root / name).resolve()
     if Path(name).is_absolute() or not path.is_relative_to(root):
-        allowed = "a path relative to the scene's folder, and inside it"
+        allowed = "a path relative to the scene's folder, and inside it, unless --allow-outside"
         message = f"must be {allowed}; is {shown(name)}"
         raise refusal(Problem(field, message, name, allowed))
     return path

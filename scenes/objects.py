@@ -16,7 +16,11 @@ __all__ = ["SceneObject"]
 class SceneObject(SceneModel):
     """A thing in the scene."""
 
-    name: str = Field(default="", description='name in messages, unique; "objects[i]" if not given')
+    name: str = Field(
+        default="",
+        max_length=200,
+        description='name in messages, unique; "objects[i]" if not given',
+    )
     shape: Shape = Field(description="where its surface is")
     material: Material = Field(description="what its surface does to light")
 

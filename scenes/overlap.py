@@ -17,9 +17,9 @@ from scenes.mesh_overlap import mesh_overlap_depth
 from scenes.objects import SceneObject
 from scenes.shapes import Plane, Triangulated
 from scenes.shapes.depth import height_above
-from scenes.shapes.reach import close_pairs, may_meet
+from scenes.shapes.reach import close_pairs, count_close_pairs, may_meet
 
-__all__ = ["overlap_depth", "overlap_problems"]
+__all__ = ["MAX_CLOSE_PAIRS", "crowd_problems", "overlap_depth", "overlap_problems"]
 
 FloatArray = NDArray[np.float64]
 
@@ -28,6 +28,12 @@ _TOUCH = 1e-9
 
 _TOUCH_OF_MESHES = 1e-6
 """The same where one is made of triangles: files keep coordinates in single precision, to 6e-8."""
+
+MAX_CLOSE_PAIRS = 100_000
+"""Each pair takes some tenths of a millisecond."""
+
+_MOST_CLASHES = 20
+"""Solids in one place that are told of."""
 
 _CELLS = 12
 _STARTS = 8
@@ -40,8 +46,24 @@ def overlap_problems(objects: Mapping[int, SceneObject]) -> list[Problem]:
         (index, one) for index, one in objects.items() if isinstance(one.material, Dielectric)
     ]
     pairs = close_pairs([one.shape for _, one in solids])
-    problems = [_clash(*solids[first], *solids[second]) for first, second in pairs]
-    return [problem for problem in problems if problem is not None]
+    problems: list[Problem] = []
+    for first, second in pairs:
+        problem = _clash(*solids[first], *solids[second])
+        if problem is not None:
+            problems.append(problem)
+            if len(problems) == _MOST_CLASHES:
+                break
+    return problems
+
+
+def crowd_problems(objects: Mapping[int, SceneObject]) -> list[Problem]:
+    """More objects in one place than can be looked at pair by pair."""
+    pairs = count_close_pairs([one.shape for one in objects.values()])
+    if pairs <= MAX_CLOSE_PAIRS:
+        return []
+    allowed = f"at most {MAX_CLOSE_PAIRS} pairs of objects whose bounding spheres meet"
+    return [Problem("objects", f"{pairs} pairs are close to each other; allowed: {allowed}", None,
+                    allowed)]  # fmt: skip
 
 
 def _clash(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem | None:

@@ -22,7 +22,7 @@ def key_path(parent: str, key: str | int) -> str:
     """The path of a key of the table, or of an index of the array, at `parent`."""
     if isinstance(key, int):
         return f"{parent}[{key}]"
-    written = key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else shown(key)
+    written = key if re.fullmatch(r"[A-Za-z0-9_-]{1,80}", key) else shown(key)
     return f"{parent}.{written}" if parent else written
 
 

@@ -20,10 +20,12 @@ class ReflectanceTable(SceneModel):
     """Reflectance against wavelength: linear between the entries, constant beyond them."""
 
     wavelength_nm: tuple[Wavelength, ...] = Field(
-        min_length=1, max_length=10_000, description="wavelengths, strictly increasing [nm]"
+        min_length=1, max_length=10_000, fail_fast=True,
+        description="wavelengths, strictly increasing [nm]"
     )
     values: tuple[Fraction, ...] = Field(
-        min_length=1, max_length=10_000, description="reflectance at each wavelength, 0 to 1"
+        min_length=1, max_length=10_000, fail_fast=True,
+        description="reflectance at each wavelength, 0 to 1"
     )
 
     @model_validator(mode="after")

@@ -13,7 +13,7 @@ from pydantic import (
 )
 
 from scenes.camera import Camera
-from scenes.checks import cross_problems
+from scenes.checks import MOST_OBJECTS, cross_problems
 from scenes.emitters import AnyEmitter, Glowing
 from scenes.errors import Problem, SceneError, refusal
 from scenes.fields import Count, Size, is_file
@@ -64,9 +64,15 @@ class Scene(SceneModel):
     render: RenderDefaults = Field(
         default=RenderDefaults(), description="settings this scene is best rendered with"
     )
-    objects: tuple[SceneObject, ...] = Field(default=(), description="what light meets")
-    emitters: tuple[AnyEmitter, ...] = Field(default=(), description="where light comes from")
-    sensors: tuple[AnySensor, ...] = Field(default=(), description="where light is measured")
+    objects: tuple[SceneObject, ...] = Field(
+        default=(), max_length=MOST_OBJECTS, description="what light meets"
+    )
+    emitters: tuple[AnyEmitter, ...] = Field(
+        default=(), max_length=1000, description="where light comes from"
+    )
+    sensors: tuple[AnySensor, ...] = Field(
+        default=(), max_length=1000, description="where light is measured"
+    )
 
     _source_name: str = PrivateAttr(default="scene")
     _source_text: str | None = PrivateAttr(default=None)

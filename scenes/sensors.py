@@ -24,7 +24,11 @@ _Pixels = Annotated[int, Strict(), Field(ge=1, le=16384)]
 class Sensor(SceneModel):
     """A flat place where light is measured."""
 
-    name: str = Field(default="", description='name in messages, unique; "sensors[i]" if not given')
+    name: str = Field(
+        default="",
+        max_length=200,
+        description='name in messages, unique; "sensors[i]" if not given',
+    )
     shape: Annotated[Rectangle | Disk, Field(discriminator="type")] = Field(
         description="where it is; its front is the side that the normal points to"
     )

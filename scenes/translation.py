@@ -25,6 +25,9 @@ _COMPARED = {
     "less_than": ("less than", "lt"),
     "less_than_equal": ("at most", "le"),
 }
+_MOST_ERRORS = 1000
+"""Errors of one file that are told; a hostile one may have a million."""
+
 _TABLE_INSTEAD = ("float_type", "string_type", "model_type", "model_attributes_type")
 """Errors of fields where a table with a `type` may stand, or may stand as well."""
 
@@ -37,13 +40,19 @@ def problems_of(error: ValidationError, model: type[BaseModel]) -> tuple[Problem
         model: The model at the root of the error's locations.
 
     Returns:
-        The problems in pydantic's order, which is that of the fields; none twice.
+        The problems in pydantic's order, which is that of the fields; none twice. Of more than
+        a thousand errors the rest is counted only.
     """
     found: dict[Problem, None] = {}
-    for details in error.errors(include_url=False):
+    told = error.errors(include_url=False)[:_MOST_ERRORS]
+    wrong_inside = {details["loc"][:-1] for details in told}
+    for details in told:
+        if details["type"] == "too_short" and details["loc"] in wrong_inside:
+            continue  # an array is left at its first wrong element, and only seems too short
         place = Place.at(details["loc"], model)
         found.update(dict.fromkeys(_problems(details, place)))
-    return tuple(found)
+    more = error.error_count() - _MOST_ERRORS
+    return (*found, Problem("", f"and {more} more errors")) if more > 0 else tuple(found)
 
 
 def _problems(details: ErrorDetails, place: Place) -> tuple[Problem, ...]:
@@ -57,7 +66,15 @@ def _problems(details: ErrorDetails, place: Place) -> tuple[Problem, ...]:
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         return (_unknown_type(place, value),)
     allowed = _allowed(kind, context, place) or details["msg"].removeprefix("Input should be ")
-    return (Problem(place.path, f"must be {allowed}, is {shown(value)}", value, allowed),)
+    message = f"must be {allowed}, is {shown(value)}{_guess(kind, context, value)}"
+    return (Problem(place.path, message, value, allowed),)
+
+
+def _guess(kind: str, context: Mapping[str, Any], value: Any) -> str:
+    """What a number may have been meant to be: a percentage, where only a fraction can stand."""
+    if kind == "less_than_equal" and context["le"] == 1 and 2.0 <= value <= 100.0:
+        return f"; did you mean {value / 100.0:g} (it looks like a percentage)?"
+    return ""
 
 
 def _allowed(kind: str, context: Mapping[str, Any], place: Place) -> str:
@@ -69,6 +86,8 @@ def _allowed(kind: str, context: Mapping[str, Any], place: Place) -> str:
         return str(context["expected"])
     if kind in ("too_long", "too_short", "tuple_type"):
         return _array(context, place)
+    if kind == "string_too_long":
+        return f"a text of at most {context['max_length']} characters"
     expected = _EXPECTED.get(kind, "")
     if kind in _TABLE_INSTEAD and place.tables:
         table = f'a table with a key "type", one of: {", ".join(place.types)}'

@@ -30,6 +30,7 @@ __all__ = [
 
 _NEAREST_COUNT = 4
 _NEAREST_CUTOFF = 0.4
+_LONGEST = 80
 
 
 class SpectraError(ValueError):
@@ -61,6 +62,8 @@ class UnknownName(SpectraError, KeyError):
     @property
     def nearest(self) -> tuple[str, ...]:
         """The known names most like the one asked for, best first."""
+        if len(str(self.name)) > _LONGEST:
+            return ()
         by_lower = {known.lower(): known for known in self.known}
         close = difflib.get_close_matches(
             str(self.name).lower(), by_lower, n=_NEAREST_COUNT, cutoff=_NEAREST_CUTOFF
@@ -70,7 +73,13 @@ class UnknownName(SpectraError, KeyError):
     def __str__(self) -> str:
         """One plain sentence; KeyError alone would quote it."""
         offered = f"nearest: {', '.join(self.nearest)}" if self.nearest else self._all_known()
-        return f"unknown {self.kind} {self.name!r}; {offered}"
+        return f"unknown {self.kind} {self._shown}; {offered}"
+
+    @property
+    def _shown(self) -> str:
+        """The name, quoted, and no longer than a line."""
+        text = str(self.name)
+        return repr(text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…")
 
     def _all_known(self) -> str:
         return f"known: {', '.join(self.known)}"
@@ -83,7 +92,7 @@ class UnknownAbsorption(UnknownName):
 
     def __str__(self) -> str:
         """One plain sentence; a similar name would be another medium."""
-        return f"no absorption of {self.name!r} is published here; {self._all_known()}"
+        return f"no absorption of {self._shown} is published here; {self._all_known()}"
 
 
 class UnknownConductor(UnknownName):

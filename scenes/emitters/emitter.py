@@ -19,7 +19,9 @@ class Emitter(SceneModel):
     """A source of light."""
 
     name: str = Field(
-        default="", description='name in messages, unique; "emitters[i]" if not given'
+        default="",
+        max_length=200,
+        description='name in messages, unique; "emitters[i]" if not given',
     )
     spectrum: SpectrumSpec = Field(description="name of a spectrum, or a table that describes one")
 

@@ -1,5 +1,6 @@
 """Grids of heights, and the triangles over them."""
 
+import io
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -7,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationInfo
 
+from scenes.budget import charge
 from scenes.fields import MAX_LENGTH_M, length_text, metres
+from scenes.file_content import file_content
 from scenes.shapes.surface import Surface
 
 __all__ = ["HeightGrid", "grid_surface", "read_heights"]
@@ -42,23 +45,55 @@ def read_heights(path: Path, info: ValidationInfo, *, largest: int) -> HeightGri
     Raises:
         ValueError: it holds no such grid; says why.
     """
-    if path.stat().st_size > _MAX_BYTES:
-        raise ValueError(f"it is too large; allowed: at most {_MAX_BYTES // 1024**2} MB")
-    if path.suffix.lower() == ".npy":
-        table = np.load(path, allow_pickle=False)
-    else:
-        lines = path.read_text(encoding="utf-8").replace(",", " ").splitlines()
-        rows = [[float(word) for word in line.split()] for line in lines if line.strip()]
-        if len({len(row) for row in rows}) > 1:
-            raise ValueError("its rows differ in length")
-        table = np.array(rows)
+    content = file_content(path, _MAX_BYTES)
+    charge(info, "bytes of other files", len(content), "file")
+    is_array = path.suffix.lower() == ".npy"
+    table = _array(content, largest) if is_array else _rows(content, largest)
     if table.ndim != 2 or not all(2 <= side <= largest for side in table.shape):
         raise ValueError(f"it holds an array of shape {table.shape}")
-    heights = metres(np.asarray(table, dtype=np.float64), info)
+    heights = metres(table, info)
     if not (np.abs(heights) <= MAX_LENGTH_M).all():
         limit = length_text(MAX_LENGTH_M, info)
         raise ValueError(f"its heights must be numbers of at most {limit}")
     return HeightGrid(heights)
+
+
+def _array(content: bytes, largest: int) -> FloatArray:
+    """What a .npy file holds, as its header says, which is read before any memory is taken."""
+    file = io.BytesIO(content)
+    try:
+        version = np.lib.format.read_magic(file)
+        read_header = np.lib.format.read_array_header_1_0
+        if version != (1, 0):
+            read_header = np.lib.format.read_array_header_2_0
+        shape, columns_first, kind = read_header(file)
+    except Exception as error:  # a damaged header ends in any of Python's exceptions
+        raise ValueError(f"it is no .npy file: {error}") from None
+    if kind.kind not in "fiub":
+        raise ValueError(f"it holds no real numbers, but {kind}")
+    if len(shape) != 2 or not all(2 <= side <= largest for side in shape):
+        raise ValueError(f"it holds an array of shape {shape}")
+    data = content[file.tell() :]
+    count = shape[0] * shape[1]
+    if len(data) < count * kind.itemsize:
+        raise ValueError("it is cut off")
+    numbers = np.frombuffer(data, dtype=kind, count=count).astype(np.float64)
+    return numbers.reshape(shape, order="F" if columns_first else "C")
+
+
+def _rows(content: bytes, largest: int) -> FloatArray:
+    """A table of text; no more of it than may be is taken apart."""
+    rows: list[list[float]] = []
+    for line in content.decode("utf-8").splitlines():
+        words = line.replace(",", " ").split(maxsplit=largest + 1)
+        if not words:
+            continue
+        if len(words) > largest or len(rows) == largest:
+            raise ValueError(f"it has more than {largest} numbers a side")
+        rows.append([float(word) for word in words])
+        if len(rows[-1]) != len(rows[0]):
+            raise ValueError("its rows differ in length")
+    return np.array(rows)
 
 
 def grid_surface(grid: HeightGrid, size: tuple[float, float], depth: float | None) -> Surface:

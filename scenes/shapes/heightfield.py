@@ -7,8 +7,10 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic_core import PydanticCustomError
 
-from scenes.errors import Problem, refusal, shown
+from scenes.budget import charge
+from scenes.errors import Problem, reason_of, refusal, shown
 from scenes.fields import Coordinate, Degrees, Size, length_text
 from scenes.model import SceneModel
 from scenes.nearby_files import nearby_file
@@ -22,7 +24,10 @@ _MAX_CELLS = 1000
 
 FloatArray = NDArray[np.float64]
 
-_Row = Annotated[tuple[Coordinate, ...], Field(min_length=2, max_length=_MAX_CELLS + 1)]
+_Row = Annotated[
+    tuple[Coordinate, ...], Field(min_length=2, max_length=_MAX_CELLS + 1, fail_fast=True)
+]
+_Rows = Annotated[tuple[_Row, ...], Field(min_length=2, max_length=_MAX_CELLS + 1, fail_fast=True)]
 _Cells = Annotated[int, Field(strict=True, ge=1, le=_MAX_CELLS)]
 
 
@@ -48,9 +53,7 @@ class HeightField(Triangulated):
         default="heightfield", description="heights over a rectangle: water, a relief"
     )
     size: tuple[Size, Size] = Field(description="[along x, along z] (lengths)")
-    heights: (
-        Annotated[tuple[_Row, ...], Field(min_length=2, max_length=_MAX_CELLS + 1)] | None
-    ) = Field(
+    heights: _Rows | None = Field(
         default=None,
         description="rows of heights (lengths), the rows from -z to +z, each from -x to +x",
     )
@@ -84,6 +87,20 @@ class HeightField(Triangulated):
         assert self.heights is not None  # the validator below has made sure
         return HeightGrid(np.array(self.heights))
 
+    def _draw_on_budget(self, info: ValidationInfo) -> None:
+        """Make sure that there is room for the samples and the triangles, before they are made."""
+        along_x, along_z = self.cells
+        if self.waves is not None:
+            samples = (along_x + 1) * (along_z + 1) * len(self.waves)
+            charge(info, "samples of waves", samples, "waves")
+        else:
+            rows, columns = self.grid().heights.shape
+            along_x, along_z = columns - 1, rows - 1
+        faces = 2 * along_x * along_z
+        walls = 0 if self.depth is None else faces + 4 * (along_x + along_z)
+        field = "cells" if self.waves is not None else "file" if self.file else "heights"
+        charge(info, "triangles", faces + walls, field)
+
     @model_validator(mode="after")
     def _has_heights(self, info: ValidationInfo) -> Self:
         given = [name for name in ("heights", "file", "waves") if getattr(self, name) is not None]
@@ -96,6 +113,7 @@ class HeightField(Triangulated):
             raise refusal(Problem("heights", f"must be {allowed}", None, allowed))
         if self.file is not None:
             self._read = _from_file(nearby_file(self.file, info), self.file, info)
+        self._draw_on_budget(info)
         lowest = float(self.grid().heights.min())
         if self.depth is not None and lowest <= -self.depth:
             allowed = f"more than {length_text(-lowest, info)}, below the lowest height"
@@ -107,9 +125,11 @@ class HeightField(Triangulated):
 def _from_file(path: Path, name: str, info: ValidationInfo) -> HeightGrid:
     try:
         return read_heights(path, info, largest=_MAX_CELLS + 1)
+    except PydanticCustomError:  # is a ValueError too
+        raise
     except (OSError, ValueError) as error:
         allowed = f"a grid of 2 to {_MAX_CELLS + 1} numbers a side, as .npy or as text"
-        message = f"{shown(name)} cannot be used: {error}; allowed: {allowed}"
+        message = f"{shown(name)} cannot be used: {reason_of(error)}; allowed: {allowed}"
         raise refusal(Problem("file", message, name, allowed)) from None
 
 

@@ -3,8 +3,10 @@
 from typing import Literal, Self
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic_core import PydanticCustomError
 
-from scenes.errors import Problem, refusal, shown
+from scenes.budget import charge
+from scenes.errors import Problem, reason_of, refusal, shown
 from scenes.fields import Size
 from scenes.nearby_files import nearby_file
 from scenes.shapes.mesh_file import MESH_FORMATS, NormalsChoice, read_surface
@@ -45,9 +47,13 @@ class Mesh(Triangulated):
     def _can_be_read(self, info: ValidationInfo) -> Self:
         path = nearby_file(self.file, info)
         try:
+            charge(info, "bytes of other files", path.stat().st_size, "file")
             self._surface = read_surface(path, self.unit, self.normals, turned=self.turned)
+        except PydanticCustomError:  # is a ValueError too
+            raise
         except (OSError, ValueError) as error:
             allowed = f"a file of triangles ({', '.join(kind.upper() for kind in MESH_FORMATS)})"
-            message = f"{shown(self.file)} cannot be used: {error}; allowed: {allowed}"
+            message = f"{shown(self.file)} cannot be used: {reason_of(error)}; allowed: {allowed}"
             raise refusal(Problem("file", message, self.file, allowed)) from None
+        charge(info, "triangles", len(self._surface.triangles), "file")
         return self

@@ -5,8 +5,9 @@ from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 
+from scenes.budget import charge
 from scenes.errors import Problem, refusal
 from scenes.fields import MIN_SIZE_M, Position
 from scenes.shapes.convex import ConvexSolid, Faces
@@ -21,7 +22,9 @@ _ON_HULL = 1e-9
 _SAME_NORMAL = 1e-7
 """Normals closer than this belong to one face that the hull was given in triangles."""
 
-_Vertices = Annotated[tuple[Position, ...], Field(min_length=4, max_length=_MAX_VERTICES)]
+_Vertices = Annotated[
+    tuple[Position, ...], Field(min_length=4, max_length=_MAX_VERTICES, fail_fast=True)
+]
 
 
 class Polyhedron(ConvexSolid):
@@ -41,7 +44,8 @@ class Polyhedron(ConvexSolid):
         return np.array(self.vertices)
 
     @model_validator(mode="after")
-    def _is_convex(self) -> Self:
+    def _is_convex(self, info: ValidationInfo) -> Self:
+        charge(info, "pairs of a polyhedron's corners", len(self.vertices) ** 2, "vertices")
         try:
             normals, offsets = _hull(self.vertices)
         except ValueError:
@@ -79,12 +83,14 @@ def _hull(vertices: tuple[tuple[float, float, float], ...]) -> Faces:
         hull = ConvexHull((corners - centre) / extent)
     except QhullError as error:
         raise ValueError("the vertices lie in one plane") from error
-    normals: list[NDArray[np.float64]] = []
+    normals, count = np.zeros((len(hull.equations), 3)), 0
     for equation in hull.equations:
         normal = equation[:3] / np.linalg.norm(equation[:3])
-        if not any(np.linalg.norm(normal - known) < _SAME_NORMAL for known in normals):
-            normals.append(normal)
-    outward = np.array(normals)
+        apart = np.linalg.norm(normals[:count] - normal, axis=1)
+        if not (apart < _SAME_NORMAL).any():
+            normals[count] = normal
+            count += 1
+    outward = normals[:count].copy()
     offsets = (corners @ outward.T).max(axis=0)
     outward.flags.writeable = offsets.flags.writeable = False  # the cache hands them out again
     return outward, offsets

@@ -7,17 +7,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from scenes.frames import rotation_matrix
 from scenes.shapes.convex import ConvexSolid
 from scenes.shapes.flat import Disk, FlatRectangle, Plane
 from scenes.shapes.lens import Lens
 from scenes.shapes.triangulated import Triangulated
 
-__all__ = ["close_pairs", "may_meet", "reach"]
+__all__ = ["close_pairs", "count_close_pairs", "may_meet", "reach"]
 
 FloatArray = NDArray[np.float64]
 
 
-def reach(shape: Any, direction: FloatArray) -> float:
+def reach(shape: Any, direction: FloatArray) -> float:  # noqa: PLR0911
     """The most that a point of `shape` has of `direction`: max of x · d [m], infinite for planes.
 
     That of a lens is of the cylinder around it: never less than its own. So is that of a shape
@@ -30,9 +31,12 @@ def reach(shape: Any, direction: FloatArray) -> float:
     if isinstance(shape, Plane):
         across = float(np.linalg.norm(np.cross(shape.normal, direction)))
         return math.inf if across > 1e-12 else float(np.dot(shape.position, direction))
-    if isinstance(shape, ConvexSolid | Triangulated):
+    if isinstance(shape, ConvexSolid):
         return float(np.max(shape.vertices_world() @ direction))
     middle = float(np.dot(shape.position, direction))
+    if isinstance(shape, Triangulated):  # of many vertices: the direction is turned, not they
+        turned = direction @ rotation_matrix(shape.rotation_deg)
+        return middle + float(np.max(shape.local_surface().vertices @ turned))
     if isinstance(shape, FlatRectangle):
         u, v, _ = shape.frame()
         half_u, half_v = 0.5 * shape.size[0], 0.5 * shape.size[1]
@@ -56,14 +60,25 @@ def close_pairs(shapes: Sequence[Any], slack: float = 0.0) -> Iterator[tuple[int
 
     It sorts out nearly all pairs of a scene of many objects at little cost.
     """
+    for i, close in enumerate(_close_to_each(shapes, slack)):
+        for j in close:
+            yield i, i + 1 + int(j)
+
+
+def count_close_pairs(shapes: Sequence[Any]) -> int:
+    """How many pairs of shapes have bounding spheres that meet."""
+    return sum(len(close) for close in _close_to_each(shapes, 0.0))
+
+
+def _close_to_each(shapes: Sequence[Any], slack: float) -> Iterator[NDArray[np.intp]]:
+    """Of each shape but the last, the close ones among those behind it."""
     centres, radii = np.zeros((len(shapes), 3)), np.full(len(shapes), np.inf)
     for index, shape in enumerate(shapes):
         if not isinstance(shape, Plane):
             centres[index], radii[index] = shape.bounding_sphere()
     for i in range(len(shapes) - 1):
         apart = np.linalg.norm(centres[i + 1 :] - centres[i], axis=1)
-        for j in np.flatnonzero(apart - radii[i + 1 :] - radii[i] <= slack):
-            yield i, i + 1 + int(j)
+        yield np.flatnonzero(apart - radii[i + 1 :] - radii[i] <= slack)
 
 
 def may_meet(one: Any, other: Any, slack: float = 0.0) -> bool:

@@ -3,9 +3,25 @@
 from __future__ import annotations
 
 import argparse
+import sys
+import warnings
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-__all__ = ["count", "duration", "exr_file", "figure_file", "fraction", "length", "png_file"]
+if TYPE_CHECKING:
+    from scenes import Scene
+
+__all__ = [
+    "add_scene_arguments",
+    "count",
+    "duration",
+    "exr_file",
+    "figure_file",
+    "fraction",
+    "length",
+    "load_scene",
+    "png_file",
+]
 
 _LONGEST_M = 1000.0
 
@@ -73,3 +89,32 @@ def _file_with_suffix(path: str, *suffixes: str) -> Path:
     if file.suffix.lower() not in suffixes:
         raise argparse.ArgumentTypeError(f"{path!r} does not end in {' or '.join(suffixes)}")
     return file
+
+
+def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the scene that a command is about, and what it may read."""
+    parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
+    parser.add_argument("--allow-outside", action="store_true",
+                        help="let the scene file name files outside its own folder (meshes, "
+                             "heights, masks)")
+
+
+def load_scene(arguments: argparse.Namespace) -> Scene:
+    """The scene; each value of it that looks like a slip is told on stderr, on a line of its own.
+
+    Raises:
+        SceneError: It cannot be used.
+    """
+    from scenes import SceneWarning, load
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", SceneWarning)
+        scene = load(arguments.scene, allow_outside=arguments.allow_outside)
+    for warning in caught:
+        if issubclass(warning.category, SceneWarning):
+            print(f"warning: {warning.message}", file=sys.stderr)
+        else:
+            warnings.warn_explicit(
+                warning.message, warning.category, warning.filename, warning.lineno
+            )
+    return scene

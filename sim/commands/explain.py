@@ -14,6 +14,8 @@ import functools
 import sys
 from typing import TYPE_CHECKING
 
+from sim.commands.arguments import add_scene_arguments, load_scene
+
 if TYPE_CHECKING:
     from scenes import Scene
     from sim.canary import CanaryReport
@@ -30,7 +32,7 @@ _CHECK_FAILED = 1
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
-    parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
+    add_scene_arguments(parser)
     parser.add_argument("--measure", action="store_true",
                         help="measure the times here, on this scene (a minute or two)")
     parser.add_argument("--memory", action="store_true",
@@ -47,7 +49,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Print the table, and below it what it adds up to."""
-    from scenes import load
     from sim.features import BOUND_UNIT, RECORDED_ON, plan_features
     from sim.interruption import run_interruptibly
     from sim.settings import RenderSettings
@@ -57,7 +58,7 @@ def run(arguments: argparse.Namespace) -> None:
         precision=arguments.precision,
         device=arguments.device,
     )
-    scene = load(arguments.scene)
+    scene = load_scene(arguments)
     resolved = settings.resolved(scene)
     plan = plan_features(scene, resolved)
     costs = None

@@ -40,14 +40,18 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _print_pixels(image: SpectralImage) -> None:
+    import numpy as np
+
     height, width, bands = image.spectral_radiance.shape
     lowest_nm, highest_nm = image.wavelengths_nm[0], image.wavelengths_nm[-1]
     print(image.path)
     _print_row("size", f"{width} × {height} pixels")
     _print_row("bands", f"{bands}, centred on {lowest_nm:g} to {highest_nm:g} nm")
     _print_row("unit", image.attribute("bands") or image.attributes.get("emissiveUnits"))
-    _print_row("mean", f"{image.spectral_radiance.mean(dtype='float64'):.6g}")
-    _print_row("largest", f"{image.spectral_radiance.max():.6g}")
+    with np.errstate(invalid="ignore"):  # a file may hold anything
+        mean, largest = image.spectral_radiance.mean(dtype="float64"), image.spectral_radiance.max()
+    _print_row("mean", f"{mean:.6g}")
+    _print_row("largest", f"{largest:.6g}")
     _print_row("standard error", "yes" if image.standard_error is not None else "no")
     _print_row("linear RGB", "yes" if image.linear_rgb is not None else "no")
     _print_row("exposure", image.attributes.get("EV"), "stops")
@@ -61,19 +65,53 @@ def _print_origin(image: SpectralImage) -> None:
     _print_row("observer", image.attribute("observer"))
     _print_row("ended by", image.attribute("stopping"))
     for heading, unit in (("settings", ""), ("features", ""), ("accuracy", ""), ("energy", "W")):
-        values = json.loads(image.attribute(heading) or "{}")
+        values = _table(image, heading)
         if values:
             print(f"  {heading}")
         by_band = values.pop("by_band", ())
         for name, value in values.items():
             _print_row(f"  {name}", value, unit)
-        for line in band_lines(by_band, image.wavelengths_nm.tolist()):
-            print(f"  {line}")
+        if by_band:
+            _print_bands(image, by_band)
+
+
+def _print_bands(image: SpectralImage, by_band: object) -> None:
+    """The energy books of each band, of a file that whoever may have written."""
+    import numpy as np
+
+    from sim.errors import FileFormatError
+    from sim.photons.energy import BOOK_COLUMNS
+
+    shape = (len(image.wavelengths_nm), len(BOOK_COLUMNS))
+    try:
+        rows = np.array(by_band, dtype=np.float64)
+    except (TypeError, ValueError):
+        rows = np.empty(0)
+    if rows.shape != shape:
+        reason = f"by_band of its attribute 'energy' is not a table of {shape[0]} × {shape[1]}"
+        raise FileFormatError(image.path, reason)
+    for line in band_lines(rows.tolist(), image.wavelengths_nm.tolist()):
+        print(f"  {line}")
+
+
+def _table(image: SpectralImage, heading: str) -> dict[str, object]:
+    """What an attribute of ours holds, whoever wrote it."""
+    from sim.errors import FileFormatError
+
+    try:
+        values = json.loads(image.attribute(heading) or "{}")
+    except (ValueError, RecursionError):
+        values = None
+    if not isinstance(values, dict):
+        reason = f"its attribute {heading!r} is not what Nephroid writes there: a table in JSON"
+        raise FileFormatError(image.path, reason)
+    return values
 
 
 def _print_row(name: str, value: object, unit: str = "") -> None:
     """One line, unless the file does not say."""
-    text = _text(value)
+    told = _text(value)  # of a file from anywhere: nothing that a terminal would obey
+    text = "".join(one if one.isprintable() else "\N{REPLACEMENT CHARACTER}" for one in told)
     if text:
         print(f"  {name:<22}{text} {unit}".rstrip())
 

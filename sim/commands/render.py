@@ -20,7 +20,15 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sim.commands.arguments import count, duration, exr_file, fraction, png_file
+from sim.commands.arguments import (
+    add_scene_arguments,
+    count,
+    duration,
+    exr_file,
+    fraction,
+    load_scene,
+    png_file,
+)
 from sim.commands.energy import print_books
 from sim.commands.kept_work import kept_work
 from sim.commands.sensor_output import check_sensor_files, write_readings
@@ -40,7 +48,7 @@ SUMMARY = "render a scene to a spectral EXR and a PNG"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
-    parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
+    add_scene_arguments(parser)
     parser.add_argument("-o", "--output", type=exr_file, metavar="OUT.exr",
                         help="spectral EXR (default: the scene's name, in this folder)")
     parser.add_argument("--png", type=png_file, metavar="OUT.png",
@@ -109,7 +117,6 @@ _stops.__name__ = "number of stops"
 
 def run(arguments: argparse.Namespace) -> None:
     """Render, then write the files; outputs, settings and scene are checked before."""
-    from scenes import load
     from sim.atomic_file import check_writable
     from sim.errors import SettingsError
     from sim.settings import RenderSettings
@@ -118,7 +125,7 @@ def run(arguments: argparse.Namespace) -> None:
     names = {field.name for field in dataclasses.fields(RenderSettings)}
     given = {name: value for name, value in vars(arguments).items() if name in names}
     settings = RenderSettings(**given)
-    scene = load(arguments.scene)
+    scene = load_scene(arguments)
     if arguments.photon_map:
         if arguments.resume:
             raise SettingsError("resume", True, "no --resume: a photon map is of one pass")

@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sim.commands.arguments import count
+from sim.commands.arguments import add_scene_arguments, count, load_scene
 
 if TYPE_CHECKING:
     from scenes import Scene
@@ -32,7 +32,7 @@ _SECONDS_BETWEEN_LINES = 2.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
-    parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
+    add_scene_arguments(parser)
     parser.add_argument("-o", "--output", type=Path, metavar="FOLDER",
                         help="folder for study.csv and study.html (default: SCENE-study, here)")
     parser.add_argument("--quick", action="store_true",
@@ -47,13 +47,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Study, then write both files; outputs, settings and scene are checked before."""
-    from scenes import load
     from sim.atomic_file import check_writable, write_whole
     from sim.interruption import run_interruptibly
     from sim.settings import RenderSettings
 
     settings = RenderSettings(seed=arguments.seed, threads=arguments.threads)
-    scene = load(arguments.scene)
+    scene = load_scene(arguments)
     scene.require_renderable()
     folder = arguments.output or Path(f"{scene.source_name}-study")
     paths = [folder / name for name in _FILES]

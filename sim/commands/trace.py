@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sim.commands.arguments import count, figure_file
+from sim.commands.arguments import add_scene_arguments, count, figure_file, load_scene
 
 if TYPE_CHECKING:
     from scenes import Scene
@@ -28,7 +28,7 @@ _DEFAULT_WAVELENGTHS = 5
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
-    parser.add_argument("scene", help="name of a gallery scene, or path of a .toml file")
+    add_scene_arguments(parser)
     parser.add_argument("-o", "--output", type=figure_file, metavar="OUT.png|.svg",
                         help="the diagram (default: SCENE-rays.png, in this folder)")
     parser.add_argument("--rays", type=count, default=24, metavar="N",
@@ -59,7 +59,6 @@ _wavelengths.__name__ = "list of wavelengths"
 
 def run(arguments: argparse.Namespace) -> None:
     """Trace the rays and draw them."""
-    from scenes import load
     from sim.atomic_file import check_writable
     from sim.diagram.draw import draw_rays
     from sim.errors import SettingsError
@@ -68,7 +67,7 @@ def run(arguments: argparse.Namespace) -> None:
 
     if arguments.rays < 1:
         raise SettingsError("rays", arguments.rays, "a whole number from 1")
-    scene = load(arguments.scene)
+    scene = load_scene(arguments)
     output = arguments.output or Path(f"{scene.source_name}-rays.png")
     check_writable(output)
     wavelengths_nm = arguments.wavelengths or _default_wavelengths_nm(scene)

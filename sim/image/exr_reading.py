@@ -5,12 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenes.file_content import require_file
 from sim.errors import FileFormatError
+from sim.image.exr_claims import refuse_bombs
 from sim.image.exr_layout import (
     ACCURACY_CHANNELS,
     ATTRIBUTE_PREFIX,
@@ -20,8 +23,6 @@ from sim.image.exr_layout import (
 from sim.native_output import silenced_native_output
 
 __all__ = ["SpectralImage", "read_exr"]
-
-_MAGIC = (20000630).to_bytes(4, "little")  # OpenEXR file layout, "Magic number".
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,12 +67,14 @@ def read_exr(path: str | os.PathLike[str]) -> SpectralImage:
         Its bands in the order of their wavelengths, and its attributes.
 
     Raises:
-        FileFormatError: It is no OpenEXR file, it is damaged or cut off, or it has no channels
-            of spectral radiance.
+        FileFormatError: It is no OpenEXR file, it is damaged or cut off, it claims more than it
+            can hold, or it has no channels of spectral radiance.
         OSError: It cannot be opened.
     """
     path = os.fspath(path)
     header, pixels = _read_part(path)
+    if len({plane.shape for plane in pixels.values()}) > 1:
+        raise FileFormatError(path, "its channels differ in size")
     radiance = _layer(pixels, radiance_wavelength_nm)
     error = _layer(pixels, error_wavelength_nm)
     if not radiance:
@@ -96,9 +99,8 @@ def read_exr(path: str | os.PathLike[str]) -> SpectralImage:
 
 def _read_part(path: str) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     """Attributes and pixels of the first part of an OpenEXR file."""
-    with open(path, "rb") as file:
-        if file.read(len(_MAGIC)) != _MAGIC:
-            raise FileFormatError(path, "it is not an OpenEXR file")
+    require_file(Path(path))
+    refuse_bombs(path)
     import OpenEXR
 
     try:

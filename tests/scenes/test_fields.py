@@ -145,6 +145,7 @@ def leaves(value: Any, path: str = "", kind: str = "", key: str = "") -> Iterato
         yield path, kind, key, value
 
 
+@pytest.mark.filterwarnings("ignore::scenes.SceneWarning")  # of sizes that are made up
 def test_every_length_is_scaled_and_nothing_else() -> None:
     in_m = list(leaves(scenes.loads(EVERYTHING).model_dump()))
     in_mm = list(leaves(scenes.loads('length_unit = "mm"\n' + EVERYTHING).model_dump()))
@@ -221,4 +222,5 @@ def test_lengths_and_directions_out_of_bounds(
 
 def test_a_wavelength_in_micrometres_is_recognised(problems: Load) -> None:
     message = problems("[film]\nfirst_nm = 0.4")["film.first_nm"].message
-    assert message == "must be 10 to 1e+06 nm, is 0.4 (0.4 looks like micrometres)"
+    looks = "0.4 looks like micrometres; did you mean 400 nm?"
+    assert message == f"must be 10 to 1e+06 nm, is 0.4 ({looks})"
