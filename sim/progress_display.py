@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import threading
 from collections.abc import Iterator
 from typing import TextIO
 
@@ -25,7 +26,11 @@ def progress_display(stream: TextIO) -> Iterator[ProgressCallback]:
         The callback to hand to the renderer; it may be called from any thread.
     """
     if not stream.isatty():
-        yield ProgressLines(stream)
+        lines = ProgressLines(stream)
+        try:
+            yield lines
+        finally:
+            lines.close()
         return
     from rich.console import Console
     from rich.progress import BarColumn, TextColumn
@@ -48,10 +53,16 @@ def progress_display(stream: TextIO) -> Iterator[ProgressCallback]:
 
 
 class ProgressLines:
-    """Writes a line when a stage begins in the first pass, and then one every two seconds."""
+    """Writes a line when a stage begins in the first pass, and then one every two seconds.
+
+    A run that was interrupted is left behind, and may report for a while: not between the halves of
+    another line, and after `close` not at all.
+    """
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
+        self._lock = threading.Lock()
+        self._closed = False
         self._pace = _Pace()
         self._stages: set[str] = set()
         self._last_seconds = -math.inf
@@ -63,7 +74,14 @@ class ProgressLines:
         if is_due or progress.stage not in self._stages:
             self._stages.add(progress.stage)
             self._last_seconds = progress.seconds
-            print(progress_text(progress, *pace), file=self._stream, flush=True)
+            with self._lock:
+                if not self._closed:
+                    print(progress_text(progress, *pace), file=self._stream, flush=True)
+
+    def close(self) -> None:
+        """Write no more; a line that is being written is finished first."""
+        with self._lock:
+            self._closed = True
 
 
 class _Pace:

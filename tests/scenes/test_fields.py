@@ -31,10 +31,10 @@ material = { type = "dielectric", medium = "N-BK7" }
 shape = { type = "plane", position = [1, 2, 3], normal = [0, 1, 0] }
 material = { type = "lambertian", reflectance = 0.5 }
 [[objects]]
-shape = { type = "rectangle", position = [1, 2, 3], size = [4, 5], up = [1, 0, 0] }
+shape = { type = "rectangle", position = [1, 2.5, 3], size = [4, 5], up = [1, 0, 0] }
 material = { type = "absorber" }
 [[objects]]
-shape = { type = "disk", position = [1, 2, 3], radius = 4, normal = [0, 1, 0] }
+shape = { type = "disk", position = [1, 2.25, 3], radius = 4, normal = [0, 1, 0] }
 material = { type = "absorber" }
 [[objects]]
 shape = { type = "box", position = [1, 2, 3], size = [4, 5, 6], rotation_deg = [10, 20, 30] }

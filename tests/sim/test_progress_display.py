@@ -35,6 +35,14 @@ def test_time_left(left, text):
     assert progress_text(report(), 1.0, left).endswith(f", {text}")
 
 
+def test_a_run_that_was_left_behind_writes_no_more():
+    stream = io.StringIO()
+    with progress_display(stream) as show:
+        show(report(stage="trace"))
+    show(report(stage="gather"))
+    assert stream.getvalue().count("\n") == 1
+
+
 def test_lines_come_with_each_new_stage_and_every_two_seconds():
     stream = io.StringIO()
     lines = ProgressLines(stream)

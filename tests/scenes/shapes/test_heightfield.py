@@ -107,7 +107,7 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path, content, words) -> None:
     [
         ({}, "heights"),
         ({"waves": [WAVE], "heights": [[0, 0], [0, 0]]}, "heights"),
-        ({"heights": [[0.0, 0.0], [0.0]]}, "heights"),
+        ({"heights": [[0.0, 0.0], [0.0]]}, "heights[1]"),
         ({"heights": [[0.0], [0.0]]}, "heights[0]"),
         ({"waves": [WAVE], "depth": 0.05}, "depth"),
         ({"waves": [WAVE], "cells": (0, 3)}, "cells[0]"),

@@ -70,7 +70,7 @@ def test_explain_tells_it(small_scene, tmp_path, capsys):
     assert main(["explain", str(tmp_path / "bench.toml")]) == 0
     assert "memory: the film takes 0 MB; " in capsys.readouterr().out
     assert main(["explain", "--memory", str(tmp_path / "bench.toml")]) == 0
-    assert re.search(r"^memory: a run takes about \d+ MB \(program .* are there$",
+    assert re.search(r"^memory: a run takes about [\d.]+ [MG]B \(program .* are there$",
                      capsys.readouterr().out, re.MULTILINE)  # fmt: skip
 
 
