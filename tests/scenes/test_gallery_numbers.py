@@ -136,3 +136,23 @@ def test_the_plates_stand_at_brewsters_angle_and_pass_what_they_say() -> None:
     assert (-math.cos(2.0 * incidence), -math.sin(2.0 * incidence)) == pytest.approx(
         (0.395010, -0.918677), abs=1e-6
     )
+
+
+@pytest.mark.parametrize(
+    ("height", "stated_mm", "stated"), [(0.0, 16.0, 0.202), (12.5, 12.46, 0.288), (25.0, 0.83, 0.92)]
+)
+def test_the_smoky_lens_is_dark_where_it_is_thick(
+    height: float, stated_mm: float, stated: float
+) -> None:
+    # exp(-α d), d = t - 2 (R - √(R² - h²)) along the axis of a biconvex lens (Beer and Lambert).
+    scene = scenes.load("smoky-lens")
+    lens = scene.objects[0]
+    assert isinstance(lens.shape, Lens)
+    assert isinstance(lens.material, Dielectric)
+    absorption = lens.material.absorption
+    assert isinstance(absorption, scenes.NapierianAbsorption)
+    assert lens.shape.first.curvature == -lens.shape.second.curvature
+    radius, h = 1.0 / lens.shape.first.curvature, height * 1e-3
+    length = lens.shape.thickness - 2.0 * (radius - math.sqrt(radius**2 - h**2))
+    assert 1e3 * length == pytest.approx(stated_mm, abs=0.0051)
+    assert math.exp(-float(absorption.coefficient) * length) == pytest.approx(stated, abs=5.1e-4)
