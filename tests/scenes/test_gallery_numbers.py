@@ -139,7 +139,8 @@ def test_the_plates_stand_at_brewsters_angle_and_pass_what_they_say() -> None:
 
 
 @pytest.mark.parametrize(
-    ("height", "stated_mm", "stated"), [(0.0, 16.0, 0.202), (12.5, 12.46, 0.288), (25.0, 0.83, 0.92)]
+    ("height", "stated_mm", "stated"),
+    [(0.0, 16.0, 0.202), (12.5, 12.46, 0.288), (25.0, 0.83, 0.92)],
 )
 def test_the_smoky_lens_is_dark_where_it_is_thick(
     height: float, stated_mm: float, stated: float
