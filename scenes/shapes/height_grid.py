@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationInfo
 
 from scenes.budget import charge
-from scenes.fields import MAX_LENGTH_M, length_text, metres
+from scenes.fields import MAX_LENGTH_M, length_text
 from scenes.file_content import file_content
 from scenes.shapes.surface import Surface
 
@@ -34,12 +34,13 @@ class HeightGrid:
     slopes: tuple[FloatArray, FloatArray] | None = None
 
 
-def read_heights(path: Path, info: ValidationInfo, *, largest: int) -> HeightGrid:
-    """The heights in a file, in the unit of the scene file.
+def read_heights(path: Path, info: ValidationInfo, *, unit: float, largest: int) -> HeightGrid:
+    """The heights in a file.
 
     Args:
         path: of a .npy file, or of text: numbers in rows, parted by blanks or commas.
-        info: of the validation, which knows the unit.
+        info: of the validation, which keeps the budget.
+        unit: of the file's numbers [m].
         largest: how many numbers a side may have.
 
     Raises:
@@ -51,7 +52,7 @@ def read_heights(path: Path, info: ValidationInfo, *, largest: int) -> HeightGri
     table = _array(content, largest) if is_array else _rows(content, largest)
     if table.ndim != 2 or not all(2 <= side <= largest for side in table.shape):
         raise ValueError(f"it holds an array of shape {table.shape}")
-    heights = metres(table, info)
+    heights = table * unit
     if not (np.abs(heights) <= MAX_LENGTH_M).all():
         limit = length_text(MAX_LENGTH_M, info)
         raise ValueError(f"its heights must be numbers of at most {limit}")

@@ -1,7 +1,6 @@
 """The height field: water with waves, a rippled sheet, a relief."""
 
 from functools import lru_cache
-from pathlib import Path
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -61,6 +60,10 @@ class HeightField(Triangulated):
         default=None,
         description="in place of heights, a file of them (lengths): .npy, or a table of text",
     )
+    unit: Size = Field(
+        default=1.0, validate_default=True,
+        description="length of the file's unit (length); the scene file's if not given",
+    )  # fmt: skip
     waves: Annotated[tuple[Wave, ...], Field(min_length=1, max_length=100)] | None = Field(
         default=None, description="in place of heights, waves that add up"
     )
@@ -101,6 +104,17 @@ class HeightField(Triangulated):
         field = "cells" if self.waves is not None else "file" if self.file else "heights"
         charge(info, "triangles", faces + walls, field)
 
+    def _from_file(self, name: str, info: ValidationInfo) -> HeightGrid:
+        path = nearby_file(name, info)
+        try:
+            return read_heights(path, info, unit=self.unit, largest=_MAX_CELLS + 1)
+        except PydanticCustomError:  # is a ValueError too
+            raise
+        except (OSError, ValueError) as error:
+            allowed = f"a grid of 2 to {_MAX_CELLS + 1} numbers a side, as .npy or as text"
+            message = f"{shown(name)} cannot be used: {reason_of(error)}; allowed: {allowed}"
+            raise refusal(Problem("file", message, name, allowed)) from None
+
     @model_validator(mode="after")
     def _has_heights(self, info: ValidationInfo) -> Self:
         given = [name for name in ("heights", "file", "waves") if getattr(self, name) is not None]
@@ -112,7 +126,7 @@ class HeightField(Triangulated):
             allowed = "rows of equal length"
             raise refusal(Problem("heights", f"must be {allowed}", None, allowed))
         if self.file is not None:
-            self._read = _from_file(nearby_file(self.file, info), self.file, info)
+            self._read = self._from_file(self.file, info)
         self._draw_on_budget(info)
         lowest = float(self.grid().heights.min())
         if self.depth is not None and lowest <= -self.depth:
@@ -120,17 +134,6 @@ class HeightField(Triangulated):
             message = f"must be {allowed}; is {length_text(self.depth, info)}"
             raise refusal(Problem("depth", message, self.depth, allowed))
         return self
-
-
-def _from_file(path: Path, name: str, info: ValidationInfo) -> HeightGrid:
-    try:
-        return read_heights(path, info, largest=_MAX_CELLS + 1)
-    except PydanticCustomError:  # is a ValueError too
-        raise
-    except (OSError, ValueError) as error:
-        allowed = f"a grid of 2 to {_MAX_CELLS + 1} numbers a side, as .npy or as text"
-        message = f"{shown(name)} cannot be used: {reason_of(error)}; allowed: {allowed}"
-        raise refusal(Problem("file", message, name, allowed)) from None
 
 
 @lru_cache(maxsize=16)

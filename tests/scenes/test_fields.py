@@ -127,7 +127,8 @@ LENGTHS = {
     "position", "look_at", "radius", "size", "base", "length", "thickness", "aperture",
     "aperture_radius", "focus_distance", "sensor_height",
 }  # fmt: skip
-LENGTHS_OF = {"prism": {"height"}, "slit": {"width", "height"}, "polyhedron": {"vertices"}}
+LENGTHS_OF = {"prism": {"height"}, "slit": {"width", "height"}, "polyhedron": {"vertices"},
+              "heightfield": {"unit"}}  # fmt: skip
 LENGTHS |= {"amplitude", "period", "depth", "heights"}
 IN_FILES = {"file", "unit"}
 """Lengths that stand in files of their own, and the length of these files' unit."""

@@ -86,8 +86,12 @@ def test_heights_may_stand_in_a_file(tmp_path) -> None:
     material = {{ type = "absorber" }}
     """
     for name in ("h.npy", "h.csv", "h.txt"):
-        shape = scenes.loads(text.format(name), folder=tmp_path).objects[0].shape
-        np.testing.assert_allclose(shape.grid().heights, heights / 1000.0, rtol=1e-15)
+        scene = scenes.loads(text.format(name), folder=tmp_path)
+        # Written out in metres, the file's numbers are millimetres still.
+        again = scenes.loads(scene.to_toml(), folder=tmp_path)
+        for one in (scene, again):
+            grid = one.objects[0].shape.grid()
+            np.testing.assert_allclose(grid.heights, heights / 1000.0, rtol=1e-15)
 
 
 @pytest.mark.parametrize(
