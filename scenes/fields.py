@@ -10,8 +10,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import AfterValidator, AllowInfNan, Field, Strict, ValidationInfo
 
 from scenes.errors import Problem, refusal
@@ -43,7 +41,6 @@ __all__ = [
     "is_file",
     "length_text",
     "may_look_outside",
-    "metres",
     "unit_context",
 ]
 
@@ -107,11 +104,6 @@ def length_text(length_m: float, info: ValidationInfo) -> str:
     """A length for a message, in the unit of the file that is being read."""
     unit = _unit(info)
     return f"{length_m * UNITS_PER_METRE[unit]:.6g} {unit}"
-
-
-def metres(lengths: NDArray[np.float64], info: ValidationInfo) -> NDArray[np.float64]:
-    """Lengths in the unit of the file that is being read, in metres."""
-    return lengths / UNITS_PER_METRE[_unit(info)]
 
 
 def _coordinate_m(length: float, info: ValidationInfo) -> float:
