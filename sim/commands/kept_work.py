@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 import shlex
 import signal
-import sys
 import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from sim.standard_streams import tell
 
 if TYPE_CHECKING:
     from sim.resumption.checkpoint import Checkpoint
@@ -45,7 +46,7 @@ def kept_work(
     from sim.resumption.checkpoint import LAST_WAIT_S, Checkpoint
 
     path = checkpoint_path(output)
-    checkpoint = Checkpoint(path, resume=resume, target=output, tell=_tell)
+    checkpoint = Checkpoint(path, resume=resume, target=output, tell=tell)
     with _termination_as_ctrl_c(), checkpoint:
         try:
             yield checkpoint
@@ -62,10 +63,6 @@ def kept_work(
                 raise
             lacking = f"not enough memory: {error}{_kept(checkpoint, words)}"
             raise UnfinishedError(lacking) from error
-
-
-def _tell(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
 
 
 def _is_lack_of_memory(error: Exception) -> bool:

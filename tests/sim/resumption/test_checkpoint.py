@@ -150,6 +150,17 @@ def test_elapsed_time_counts_on(bench, monkeypatch, path):
     assert (picture.stopping, picture.settings.passes) == ("time budget", 4)
 
 
+def test_earlier_time_is_no_round_of_its_own(bench, monkeypatch, path):
+    settings = sim.RenderSettings(**SETTINGS, time_budget=500.0)
+    run_until(monkeypatch, path, 4, lambda one: sim.render(bench, settings, checkpoint=one))
+    stored = read_state(path)
+    # A round takes 1 s, and 200 s are left: taken for one, 300 s would not go in once more.
+    rewrite(path, {**stored.numbers, "seconds": 300.0, "longest_round": 1.0}, stored.arrays)
+    with Checkpoint(path, resume=True) as checkpoint:
+        picture = sim.render(bench, settings, checkpoint=checkpoint)
+    assert (picture.stopping, picture.settings.passes) == ("all passes", 6)
+
+
 def rewrite(path, numbers, arrays):
     path.write_bytes(b"".join(bytes(one) for one in module.encode_state(numbers, arrays)))
 
