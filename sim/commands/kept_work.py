@@ -41,8 +41,9 @@ def kept_work(
         OutputError: there cannot be a checkpoint, or another run writes the same file.
         KeyboardInterrupt: on Ctrl-C and on SIGTERM, with what to tell.
         UnfinishedError: files could not be written after all the work, or memory ran out.
+        CapacityError: memory ran out before the first pass was made.
     """
-    from sim.errors import OutputError, UnfinishedError
+    from sim.errors import CapacityError, OutputError, UnfinishedError
     from sim.resumption.checkpoint import LAST_WAIT_S, Checkpoint
 
     path = checkpoint_path(output)
@@ -62,7 +63,7 @@ def kept_work(
             if not _is_lack_of_memory(error):
                 raise
             lacking = f"not enough memory: {error}{_kept(checkpoint, words)}"
-            raise UnfinishedError(lacking) from error
+            raise (UnfinishedError if checkpoint.made else CapacityError)(lacking) from error
 
 
 def _is_lack_of_memory(error: Exception) -> bool:

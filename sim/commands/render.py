@@ -70,8 +70,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--resume", action=argparse.BooleanOptionalAction, default=None,
                         help="go on from the checkpoint of a run that was cut short, OUT.exr."
                              "checkpoint, to the file that it would have written; --no-resume: "
-                             "throw the checkpoint away (default: start anew, but refuse to throw "
-                             "away a minute's work or more)")
+                             "start anew, and replace the checkpoint by the first of the new run "
+                             "(default: so too, but not if that threw away a minute's work or "
+                             "more)")
     parser.add_argument("--error-map", type=png_file, metavar="OUT.png",
                         help="also draw each pixel's relative error")
     parser.add_argument("--photon-map", action="store_true",
