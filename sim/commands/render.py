@@ -79,10 +79,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="draw the photons that the first pass stores, coloured by wavelength, "
                              "and nothing else (default file: SCENE.photons.png, or --png)")
     parser.add_argument("--radius", type=float, metavar="M",
-                        help="gather radius of the first pass [m], the same everywhere")
-    parser.add_argument("--radius-pixels", type=float, default=2.0, metavar="W",
+                        help="gather radius of the first pass [m], the same everywhere (default: "
+                             "the scene's, if it has one)")
+    parser.add_argument("--radius-pixels", type=float, metavar="W",
                         help="gather radius of the first pass in widths of each pixel on what it "
-                             "sees (default: 2)")
+                             "sees, instead of one in metres (default: 2, unless the scene has a "
+                             "radius)")
     parser.add_argument("--alpha", type=float, default=2 / 3, metavar="A",
                         help="how slowly the radius shrinks from pass to pass; 1: not at all "
                              "(default: 2/3)")

@@ -66,6 +66,7 @@ def test_bad_arguments(capfd, arguments, parts):
         (["--photons", "-5"], ["photons: -5"]),
         (["--passes", "0"], ["passes: 0"]),
         (["--radius", "nan"], ["radius: nan"]),
+        (["--radius", "0.1", "--radius-pixels", "2"], ["radius_pixels: 2.0", "radius in metres"]),
         (["--threads", "0"], ["threads: 0"]),
         (["--device", "gpu"], ["device: 'gpu'", "cuda:0"]),
         (["-o", "missing/out.exr"], ["'missing/out.exr'", "there is no folder"]),
