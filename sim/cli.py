@@ -17,6 +17,7 @@ from typing import NoReturn
 from sim.commands import explain, glass, info, render, scenes, schema, spectrum, study, trace
 from sim.errors import UnfinishedError
 from sim.native_output import end_silence
+from sim.standard_streams import discard, tell
 from sim.version import VERSION
 
 __all__ = ["main", "parse_arguments", "run_from_shell"]
@@ -56,33 +57,42 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit status.
     """
     try:
-        parsed = parse_arguments(arguments)
-        parsed.run(parsed)
+        status = _run(arguments)
         sys.stdout.flush()
-    except SystemExit as leaving:  # From argparse: --help, --version or a bad argument.
-        return leaving.code if isinstance(leaving.code, int) else _SUCCESS
     except KeyboardInterrupt as stop:
         end_silence()
         kept = f" after {stop}" if str(stop) else ""
-        print(f"nephroid: stopped{kept}", file=sys.stderr)
+        tell(f"nephroid: stopped{kept}")
         return _STOPPED
-    except BrokenPipeError:
-        # Whoever read the output (`head`) has seen enough. Python flushes again at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # Whoever read the output (`head`) has seen enough.
+        return _SUCCESS
     except Exception as error:
         message = _message(error)
         if message is None:
             raise
-        print(f"nephroid: error: {message}", file=sys.stderr)
+        tell(f"nephroid: error: {message}")
         return _FAILED if isinstance(error, UnfinishedError) else _BAD_INPUT
+    return status
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    """Run one command; the exit status, unless something is raised."""
+    try:
+        parsed = parse_arguments(arguments)
+        parsed.run(parsed)
+    except SystemExit as leaving:  # From argparse: --help, --version or a bad argument.
+        return leaving.code if isinstance(leaving.code, int) else _SUCCESS
     return _SUCCESS
 
 
 def run_from_shell() -> NoReturn:
     """Entry point of the installed command: `main`, then out."""
     status = main()
-    sys.stdout.flush()
-    sys.stderr.flush()
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:  # It has been told, if it can be.
+            discard(stream)
     if status == _STOPPED:
         # Worker threads are still in native code that cannot be interrupted, and a normal exit
         # would wait for them. Nothing is lost: no file is open.
@@ -134,6 +144,8 @@ def _message(error: Exception) -> str | None:
         return f"not enough memory: {error}" if str(error) else "not enough memory"
     if isinstance(error, OSError) and error.filename is not None:
         return f"{os.fsdecode(error.filename)}: {error.strerror}"
+    if isinstance(error, OSError):  # Of a stream; a bug's has no words of the system.
+        return error.strerror
     return None
 
 

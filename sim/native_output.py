@@ -22,8 +22,9 @@ def silenced_native_output() -> Iterator[None]:
     and `sys.stderr`. Both are redirected for the whole process, so keep the block short: other
     threads are silenced with it.
     """
-    sys.stdout.flush()
-    sys.stderr.flush()
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError):  # What leads to a full disk is told of elsewhere.
+            stream.flush()
     before = len(_silenced)
     discard = os.open(os.devnull, os.O_WRONLY)
     try:

@@ -56,7 +56,7 @@ class ProgressLines:
     """Writes a line when a stage begins in the first pass, and then one every two seconds.
 
     A run that was interrupted is left behind, and may report for a while: not between the halves of
-    another line, and after `close` not at all.
+    another line, and after `close` not at all. A stream that takes no more is as good as closed.
     """
 
     def __init__(self, stream: TextIO) -> None:
@@ -75,8 +75,12 @@ class ProgressLines:
             self._stages.add(progress.stage)
             self._last_seconds = progress.seconds
             with self._lock:
-                if not self._closed:
+                if self._closed:
+                    return
+                try:
                     print(progress_text(progress, *pace), file=self._stream, flush=True)
+                except OSError:
+                    self._closed = True
 
     def close(self) -> None:
         """Write no more; a line that is being written is finished first."""

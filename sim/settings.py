@@ -1,8 +1,8 @@
 """How a picture is rendered: everything that is not the scene itself.
 
 A setting left at ``None`` takes the scene's own default (its ``[render]`` table), then the value
-in `DEFAULTS`. `RenderSettings.resolved` does so, and what it returns has no ``None`` left but the
-gather radius in metres, in whose place one in pixels stands.
+in `DEFAULTS`. `RenderSettings.resolved` does so, and what it returns has no ``None`` left but one
+of the two gather radii, in metres and in pixels: the other stands in its place.
 """
 
 from __future__ import annotations
@@ -52,7 +52,9 @@ time for 0.995 of its noise. So the reference takes 16 times the passes, for a q
 and for 0.4 of the bias, which goes with the radius² and so as passes^(α - 1).
 """
 
-DEFAULTS: Final = {"photons": 500_000, "passes": 8, "max_interactions": 256, "bounces": 0}
+DEFAULTS: Final = {
+    "photons": 500_000, "passes": 8, "max_interactions": 256, "bounces": 0, "radius_pixels": 2.0
+}  # fmt: skip
 
 OPEN_PASSES: Final = 4096
 """Passes at most where the error or the time is to decide, and no number is given."""
@@ -94,9 +96,10 @@ class RenderSettings:
         time_budget: Time for the rendering [s]; no round of passes is begun that would exceed it,
             but for the first two.
         radius: Gather radius of the first pass [m], the same everywhere; None: as `radius_pixels`
-            says.
+            says, or without it the scene.
         radius_pixels: Gather radius of the first pass in widths of the pixel, which differ with
-            what it sees and how far away that is.
+            what it sees and how far away that is; not beside `radius`. None: 2, unless the scene
+            has a radius.
         alpha: How slowly the gather radius shrinks, r²ᵢ₊₁ = r²ᵢ (i + α)/(i + 1) (Knaus and
             Zwicker 2011); 1 keeps it.
         direct_light: What shows light that comes straight from a lamp: "lamps", by shadow rays,
@@ -126,7 +129,7 @@ class RenderSettings:
     target_error: float | None = None
     time_budget: float | None = None
     radius: float | None = None
-    radius_pixels: float = 2.0
+    radius_pixels: float | None = None
     alpha: float = 2 / 3
     direct_light: DirectLight = "lamps"
     polarisation: Polarisation = "auto"
@@ -148,6 +151,9 @@ class RenderSettings:
             value = getattr(self, field)
             if value is not None:
                 self._replace(field, _positive_number(field, value, highest_number))
+        if self.radius is not None and self.radius_pixels is not None:
+            allowed = "none beside a radius in metres"
+            raise SettingsError("radius_pixels", self.radius_pixels, allowed)
         if self.preset is not None and self.preset not in PRESETS:
             names = ", ".join(repr(name) for name in PRESETS)
             raise SettingsError("preset", self.preset, names)
@@ -180,10 +186,15 @@ class RenderSettings:
             scene: The scene that is to be rendered.
 
         Returns:
-            The same settings with nothing left open but, perhaps, the radius in metres.
+            The same settings with nothing left open but one of the two radii.
         """
         values = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
-        for field in ("photons", "passes", "radius", "max_interactions", "bounces"):
+        if self.radius_pixels is None:
+            if self.radius is None:
+                values["radius"] = scene.render.radius
+            if values["radius"] is None:
+                values["radius_pixels"] = DEFAULTS["radius_pixels"]
+        for field in ("photons", "passes", "max_interactions", "bounces"):
             if values[field] is None:
                 values[field] = getattr(scene.render, field)
             if values[field] is None:
@@ -215,7 +226,7 @@ class RenderSettings:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class ResolvedSettings(RenderSettings):
-    """Render settings with nothing left open, except that the radius in metres may be None."""
+    """Render settings with nothing left open, except that one of the two radii is None."""
 
     photons: int
     passes: int

@@ -28,12 +28,14 @@ def print_books(energy: "EnergyBooks", centres_nm: Sequence[float]) -> None:
         print(line)
 
 
-def band_lines(by_band: Sequence[Sequence[float]], centres_nm: Sequence[float]) -> list[str]:
+def band_lines(
+    by_band: Sequence[Sequence[float]], centres_nm: Sequence[float] | None
+) -> list[str]:
     """A table of the books of each band: a heading, and a line a band; nothing without any.
 
     Args:
         by_band: the five columns of the books of each band [W].
-        centres_nm: of the bands [nm].
+        centres_nm: of the bands [nm]; None: they are not known, and bands are numbered.
     """
     from sim.photons.energy import BOOK_COLUMNS
 
@@ -41,7 +43,10 @@ def band_lines(by_band: Sequence[Sequence[float]], centres_nm: Sequence[float]) 
         return []
     heading = "".join(f"{name:>13}" for name in BOOK_COLUMNS)
     lines = [f"  {'energy [W]':<12}{heading}"]
-    for centre_nm, row in zip(centres_nm, by_band, strict=True):
-        band = f"{centre_nm:g} nm"
+    if centres_nm is None:
+        bands = [f"band {number + 1}" for number in range(len(by_band))]
+    else:
+        bands = [f"{centre_nm:g} nm" for centre_nm in centres_nm]
+    for band, row in zip(bands, by_band, strict=True):
         lines.append(f"  {band:<12}{''.join(f'{flux:13.6g}' for flux in row)}")
     return lines

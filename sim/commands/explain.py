@@ -102,6 +102,8 @@ def _memory_text(scene: Scene, settings: ResolvedSettings, *, traced: bool) -> s
 
     available = available_memory()
     there = "" if available is None else f"; {size_text(available)} are there"
+    if not traced and scene.camera is None:
+        return f"memory: --memory tells what a run takes{there}"
     if not traced:
         film = size_text(sum(film_memory(scene)))
         return f"memory: the film takes {film}{there}; --memory adds what photons take"

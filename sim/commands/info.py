@@ -9,11 +9,17 @@ from typing import TYPE_CHECKING
 from sim.commands.energy import band_lines
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from sim.image.exr_reading import SpectralImage
 
 __all__ = ["SUMMARY", "add_arguments", "run"]
 
 SUMMARY = "what a spectral EXR holds"
+
+_DEEPEST = 8
+"""Tables in tables of an attribute; Nephroid writes no more than two."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,21 +83,45 @@ def _print_origin(image: SpectralImage) -> None:
 
 def _print_bands(image: SpectralImage, by_band: object) -> None:
     """The energy books of each band, of a file that whoever may have written."""
-    import numpy as np
-
     from sim.errors import FileFormatError
     from sim.photons.energy import BOOK_COLUMNS
 
-    shape = (len(image.wavelengths_nm), len(BOOK_COLUMNS))
-    try:
-        rows = np.array(by_band, dtype=np.float64)
-    except (TypeError, ValueError):
-        rows = np.empty(0)
-    if rows.shape != shape:
-        reason = f"by_band of its attribute 'energy' is not a table of {shape[0]} × {shape[1]}"
+    rows, columns = _numbers(by_band), len(BOOK_COLUMNS)
+    if rows.ndim != 2 or rows.shape[1] != columns:
+        reason = f"by_band of its attribute 'energy' is not a table of {columns} columns"
         raise FileFormatError(image.path, reason)
-    for line in band_lines(rows.tolist(), image.wavelengths_nm.tolist()):
+    for line in band_lines(rows.tolist(), _book_centres_nm(image, len(rows))):
         print(f"  {line}")
+
+
+def _book_centres_nm(image: SpectralImage, count: int) -> list[float] | None:
+    """Centres of the books' bands [nm], which are the film's; None if the file does not say.
+
+    A sensor's own bands may be others.
+    """
+    import numpy as np
+
+    text = image.attribute("film_edges_nm")
+    if text is None:
+        return image.wavelengths_nm.tolist() if len(image.wavelengths_nm) == count else None
+    try:
+        edges_nm = _numbers(json.loads(text))
+    except (ValueError, RecursionError):
+        return None
+    if edges_nm.shape != (count + 1,) or not np.all(np.isfinite(edges_nm)):
+        return None
+    centres_nm: list[float] = (0.5 * (edges_nm[1:] + edges_nm[:-1])).tolist()
+    return centres_nm
+
+
+def _numbers(values: object) -> NDArray[np.float64]:
+    """What a file holds as an array; an empty one if those are no numbers in rows."""
+    import numpy as np
+
+    try:
+        return np.array(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        return np.empty(0)
 
 
 def _table(image: SpectralImage, heading: str) -> dict[str, object]:
@@ -116,12 +146,14 @@ def _print_row(name: str, value: object, unit: str = "") -> None:
         print(f"  {name:<22}{text} {unit}".rstrip())
 
 
-def _text(value: object) -> str:
-    """A value of an attribute, as a reader wants it."""
+def _text(value: object, depth: int = _DEEPEST) -> str:
+    """A value of an attribute, as a reader wants it; what is nested deeper is left out."""
     if isinstance(value, float):
         return f"{value:.9g}"
+    if isinstance(value, dict | list) and depth == 0:
+        return "…"
     if isinstance(value, dict):
-        return ", ".join(f"{name} {_text(one)}" for name, one in value.items())
+        return ", ".join(f"{name} {_text(one, depth - 1)}" for name, one in value.items())
     if isinstance(value, list):
-        return ", ".join(map(_text, value))
+        return ", ".join(_text(one, depth - 1) for one in value)
     return "" if value is None else str(value)

@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 import shlex
 import signal
-import sys
 import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from sim.standard_streams import tell
 
 if TYPE_CHECKING:
     from sim.resumption.checkpoint import Checkpoint
@@ -40,12 +41,13 @@ def kept_work(
         OutputError: there cannot be a checkpoint, or another run writes the same file.
         KeyboardInterrupt: on Ctrl-C and on SIGTERM, with what to tell.
         UnfinishedError: files could not be written after all the work, or memory ran out.
+        CapacityError: memory ran out before the first pass was made.
     """
-    from sim.errors import OutputError, UnfinishedError
+    from sim.errors import CapacityError, OutputError, UnfinishedError
     from sim.resumption.checkpoint import LAST_WAIT_S, Checkpoint
 
     path = checkpoint_path(output)
-    checkpoint = Checkpoint(path, resume=resume, target=output, tell=_tell)
+    checkpoint = Checkpoint(path, resume=resume, target=output, tell=tell)
     with _termination_as_ctrl_c(), checkpoint:
         try:
             yield checkpoint
@@ -61,11 +63,7 @@ def kept_work(
             if not _is_lack_of_memory(error):
                 raise
             lacking = f"not enough memory: {error}{_kept(checkpoint, words)}"
-            raise UnfinishedError(lacking) from error
-
-
-def _tell(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
+            raise (UnfinishedError if checkpoint.made else CapacityError)(lacking) from error
 
 
 def _is_lack_of_memory(error: Exception) -> bool:

@@ -70,18 +70,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--resume", action=argparse.BooleanOptionalAction, default=None,
                         help="go on from the checkpoint of a run that was cut short, OUT.exr."
                              "checkpoint, to the file that it would have written; --no-resume: "
-                             "throw the checkpoint away (default: start anew, but refuse to throw "
-                             "away a minute's work or more)")
+                             "start anew, and replace the checkpoint by the first of the new run "
+                             "(default: so too, but not if that threw away a minute's work or "
+                             "more)")
     parser.add_argument("--error-map", type=png_file, metavar="OUT.png",
                         help="also draw each pixel's relative error")
     parser.add_argument("--photon-map", action="store_true",
                         help="draw the photons that the first pass stores, coloured by wavelength, "
                              "and nothing else (default file: SCENE.photons.png, or --png)")
     parser.add_argument("--radius", type=float, metavar="M",
-                        help="gather radius of the first pass [m], the same everywhere")
-    parser.add_argument("--radius-pixels", type=float, default=2.0, metavar="W",
+                        help="gather radius of the first pass [m], the same everywhere (default: "
+                             "the scene's, if it has one)")
+    parser.add_argument("--radius-pixels", type=float, metavar="W",
                         help="gather radius of the first pass in widths of each pixel on what it "
-                             "sees (default: 2)")
+                             "sees, instead of one in metres (default: 2, unless the scene has a "
+                             "radius)")
     parser.add_argument("--alpha", type=float, default=2 / 3, metavar="A",
                         help="how slowly the radius shrinks from pass to pass; 1: not at all "
                              "(default: 2/3)")

@@ -88,6 +88,7 @@ def choose_gather_radius(
         return GatherRadius(_radius_unseen(compiled, survey), scale)
     median = float(np.median(widths))
     relative = np.clip(survey.width_grid / median, NARROWEST, WIDEST)
+    assert plan.radius_pixels is not None  # a resolved plan has one of the two
     radius = float(np.clip(plan.radius_pixels * median, least, most))
     return GatherRadius(radius, _of_pixels(relative, film))
 

@@ -26,7 +26,8 @@ PROBE = 4000
 """Photons that tell how many a pass stores: their number is known to a few per cent."""
 
 MANY_STORED = 50.0
-"""Deposits of one photon; if there is room for twice as many, none are traced to count them."""
+"""Deposits of one photon, and rays that sensors keep of it; if there is room for twice as many,
+none are traced to count them."""
 
 _GRID_BYTES = 20
 """Of a hash grid, for each photon: its cell, its number, and the like of both for sorting."""
@@ -90,7 +91,9 @@ def require_memory(
     available = available_memory()
     if available is None or compiled.device != "cpu":
         return
-    most = _counted(compiled, settings, MANY_STORED * settings.photons, 0.0, 0.0, pictured)
+    many = MANY_STORED * settings.photons
+    keeps_rays = any(isinstance(one, scenes.RaySensor) for one in compiled.scene.sensors)
+    most = _counted(compiled, settings, many, 0.0, many if keeps_rays else 0.0, pictured)
     if 2 * (most.total - most.program) < available:
         return
     estimate = estimate_memory(compiled, lamps, settings, pictured=pictured)

@@ -19,7 +19,7 @@ from typing import Any, Self
 
 from sim.atomic_file import check_writable, replacing
 from sim.errors import CheckpointError, FileFormatError, OutputError
-from sim.resumption.fingerprint import list_differences
+from sim.resumption.fingerprint import Difference, list_differences
 from sim.resumption.gate import Gate
 from sim.resumption.run_lock import RunLock
 from sim.resumption.run_state import RunState
@@ -66,10 +66,11 @@ class Checkpoint:
         resume: True: go on from what the file holds, if it is there. False: start anew. None:
             start anew too, unless that threw away a minute's work or more.
         target: What two runs must not write at once, for messages; None: the checkpoint.
-        tell: Told in a line what cannot be seen in the result.
+        tell: Told in a few lines what cannot be seen in the result.
 
     Attributes:
         passes: How many passes the file holds, of this run.
+        made: How many this run has come to, kept or not.
     """
 
     def __init__(
@@ -82,7 +83,7 @@ class Checkpoint:
     ) -> None:
         self.path = Path(path)
         self.resume = resume
-        self.passes = 0
+        self.passes = self.made = 0
         self._tell = tell
         self._run_lock = RunLock(self._beside(".lock"), self.path if target is None else target)
         self._gate = Gate()
@@ -143,10 +144,11 @@ class Checkpoint:
             if self.resume and not self.path.exists():
                 self._tell(f"nephroid: there is no checkpoint {str(self.path)!r}: starting anew")
         elif not self.resume:
-            self._refuse_to_forget(stored)
+            self._refuse_to_forget(stored, passes)
         else:
             self._refuse_other_run(stored, passes)
             self._goes_on_from = stored
+            self.passes = self.made = stored.numbers["passes"]
 
     def begin(self, state: RunState) -> int:
         """Bring a run that has yet to make its first pass to where the file's run was.
@@ -169,7 +171,7 @@ class Checkpoint:
             state.restore(stored.numbers, stored.arrays)
         except ValueError as error:
             raise FileFormatError(self.path, str(error)) from None
-        self.passes = state.passes
+        self.passes = self.made = state.passes
         self._tell(f"nephroid: going on after {work_text(stored)}, from {str(self.path)!r}")
         # The same question as after its last pass; perhaps another target, or less time.
         ended = state.passes > 0 and state.ends()
@@ -183,6 +185,7 @@ class Checkpoint:
         Raises:
             KeyboardInterrupt: the block has been left meanwhile.
         """
+        self.made = state.passes
         if self._under_way is not None and self._under_way.is_alive():
             return
         gap = min(LONGEST_GAP_S, self._cost_s / COST_SHARE)
@@ -263,36 +266,56 @@ class Checkpoint:
             return None
         return stored
 
-    def _refuse_to_forget(self, stored: StoredState) -> None:
+    def _refuse_to_forget(self, stored: StoredState, asked: int) -> None:
         """Tell of a checkpoint that is about to be replaced, or do not replace it."""
-        if stored.numbers["seconds"] < WORTH_KEEPING_S:
+        work, mismatch = work_text(stored), self._mismatch(stored, asked)
+        is_worth_it = stored.numbers["seconds"] >= WORTH_KEEPING_S
+        if mismatch is not None:
+            reason, differences = mismatch
+            end = "no resume (--no-resume) throws it away" if is_worth_it else "it is replaced"
+            error = CheckpointError(self.path, f"{reason} ({work}); {end}", differences)
+            if is_worth_it:
+                raise error
+            self._tell(f"nephroid: starting anew; {error}")
+        elif is_worth_it:
+            raise CheckpointError(
+                self.path,
+                f"it holds {work}: resume (--resume) goes on from there, no resume (--no-resume)"
+                " throws it away",
+            )
+        else:
             self._tell(
-                f"nephroid: starting anew; resume would have gone on after {work_text(stored)},"
+                f"nephroid: starting anew; resume would have gone on after {work},"
                 f" from {str(self.path)!r}"
             )
-            return
-        raise CheckpointError(
-            self.path,
-            f"it holds {work_text(stored)}: resume (--resume) goes on from there, no resume"
-            " (--no-resume) throws it away",
-        )
 
     def _refuse_other_run(self, stored: StoredState, asked: int) -> None:
+        mismatch = self._mismatch(stored, asked)
+        if mismatch is not None:
+            reason, differences = mismatch
+            raise CheckpointError(
+                self.path,
+                f"{reason}, and cannot be gone on with; no resume (--no-resume) throws it away",
+                differences,
+            )
+
+    def _mismatch(
+        self, stored: StoredState, asked: int
+    ) -> tuple[str, tuple[Difference, ...]] | None:
+        """Why the file's run cannot be gone on with, in words and in what differs; None if it can.
+
+        Args:
+            stored: what the file holds.
+            asked: passes that there shall be, at most.
+        """
         differences = list_differences(stored.numbers.get("fingerprint"), self._fingerprint)
         if differences:
-            raise CheckpointError(
-                self.path,
-                "it is of another run, and cannot be gone on with; no resume (--no-resume) throws"
-                " it away",
-                tuple(differences),
-            )
+            return "it is of another run", tuple(differences)
         done = stored.numbers["passes"]
         if done > asked:
-            raise CheckpointError(
-                self.path,
-                "it holds more passes than there shall be",
-                (("settings.passes", f"{done}", f"{asked}"),),
-            )
+            passes = ("settings.passes", f"{done}", f"{asked}")
+            return "it holds more passes than there shall be", (passes,)
+        return None
 
     def _remove_temporaries(self) -> None:
         """What a run that was killed has left behind half-written, or one that was left."""

@@ -18,6 +18,7 @@ from sim.errors import OutputError
 __all__ = ["RunLock"]
 
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
+_IS_HELD = (errno.EWOULDBLOCK, errno.EAGAIN, errno.EACCES)
 _LONGEST_NOTE = 300
 
 
@@ -44,8 +45,7 @@ class RunLock:
             try:
                 descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o666)
             except OSError as error:
-                reason = f"{error.strerror} ({str(self.path)!r})"
-                raise OutputError(self._target, reason) from error
+                raise self._failure(error) from error
             try:
                 self._descriptor = self._locked(descriptor)
             finally:
@@ -66,6 +66,8 @@ class RunLock:
         except OSError as error:
             if error.errno in _NO_LOCKS:
                 return descriptor
+            if error.errno not in _IS_HELD:
+                raise self._failure(error) from error
             raise OutputError(self._target, self._holder(descriptor)) from error
         # Whoever had it may have removed the file between opening and locking it here.
         try:
@@ -73,6 +75,10 @@ class RunLock:
         except FileNotFoundError:
             is_there = False
         return descriptor if is_there else None
+
+    def _failure(self, error: OSError) -> OutputError:
+        """What to tell of a lock file that fails."""
+        return OutputError(self._target, f"{error.strerror} ({str(self.path)!r})")
 
     def _holder(self, descriptor: int) -> str:
         """Who holds the lock, in words."""

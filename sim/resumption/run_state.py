@@ -94,8 +94,8 @@ class RunState:
         self.books[:] = [
             dataclasses.replace(EnergyBooks(*row[0]), by_band=row[1:]) for row in books.tolist()
         ]
-        self.rule.go_on(longest)
         self.watch.go_on(passes, seconds)
+        self.rule.go_on(longest)  # by the watch, whose earlier seconds are no round
 
 
 def _time(numbers: dict[str, Any], name: str) -> float:

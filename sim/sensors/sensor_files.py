@@ -43,6 +43,8 @@ def irradiance_exr(reading: IrradianceReading) -> memoryview:
         **_origin_texts(reading),
         "bands": IRRADIANCE_BAND_MEANS,
         "band_edges_nm": json.dumps(reading.edges_nm.tolist()),
+        # The energy books are in the film's bands.
+        "film_edges_nm": json.dumps(list(reading.origin.scene.film.edges_nm)),
         "observer": reading.origin.scene.film.observer,
     }
     return encode_channels(

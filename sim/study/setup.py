@@ -26,7 +26,7 @@ class Setup:
 
     Attributes:
         scene: what is simulated.
-        settings: with nothing left open but, perhaps, the radius in metres; its seed is not used.
+        settings: with nothing left open but one of the two radii; its seed is not used.
         method: how light is followed.
         estimator: how irradiance on the receiver is found.
         mesh_cells: cells a side, where that is by a mesh.
@@ -45,9 +45,10 @@ class Setup:
     def with_radius(self, factor: float) -> Setup:
         """The same with a multiple of its gather radius."""
         settings = self.settings
-        if settings.radius is None:
-            return self.with_settings(radius_pixels=factor * settings.radius_pixels)
-        return self.with_settings(radius=factor * settings.radius)
+        if settings.radius is not None:
+            return self.with_settings(radius=factor * settings.radius)
+        assert settings.radius_pixels is not None  # resolved settings have one of the two
+        return self.with_settings(radius_pixels=factor * settings.radius_pixels)
 
     def with_method(self, **changes: Any) -> Setup:
         """The same with light followed in another way."""

@@ -183,7 +183,10 @@ def test_attributes_that_are_no_tables_are_told(tmp_path, text, capfd) -> None:
     assert "its attribute 'settings' is not what Nephroid writes there" in capfd.readouterr().err
 
 
-@pytest.mark.parametrize("text", ['[[1, 2]]', '"a"', "[[1, 2, 3, 4, {}]]", "7"])
+@pytest.mark.parametrize("text", [
+    '[[1, 2]]', '"a"', "[[1, 2, 3, 4, {}]]", "7", f"[[1, 2, 3, 4, {10**400}]]", "[[[1]]]",
+    '{"a": 1}',
+])  # fmt: skip
 def test_books_of_bands_that_are_no_table_are_told(tmp_path, text, capfd) -> None:
     from sim.cli import main
 
@@ -191,6 +194,30 @@ def test_books_of_bands_that_are_no_table_are_told(tmp_path, text, capfd) -> Non
     path.write_bytes(exr({"nephroid_energy": f'{{"by_band": {text}}}'}))
     assert main(["info", str(path)]) == 2
     assert "by_band of its attribute 'energy' is not a table" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("edges", ['"a"', "[1]", "[[1, 2]]", f"[1, {10**400}]", "{", "[1, null]"])
+def test_bands_of_books_that_are_no_edges_are_numbered(tmp_path, edges, capfd) -> None:
+    from sim.cli import main
+
+    path = tmp_path / "a.exr"
+    books = '{"by_band": [[1, 2, 3, 4, 5]]}'
+    path.write_bytes(exr({"nephroid_energy": books, "nephroid_film_edges_nm": edges}))
+    assert main(["info", str(path)]) == 0
+    assert capfd.readouterr().out.splitlines()[-1].split() == ["band", *"112345"]
+
+
+@pytest.mark.parametrize("depth", [20, 500, 700, 900])
+@pytest.mark.parametrize("ends", ["[]", ['{"a":', "}"]])
+def test_values_nested_deep_are_cut_short(tmp_path, depth, ends, capfd) -> None:
+    from sim.cli import main
+
+    path = tmp_path / "a.exr"
+    value = f"{ends[0] * depth}1{ends[1] * depth}"
+    path.write_bytes(exr({"nephroid_settings": f'{{"photons": {value}}}'}))
+    assert main(["info", str(path)]) in (0, 2)
+    told = capfd.readouterr()
+    assert "…" in told.out or "not what Nephroid writes there" in told.err
 
 
 def test_what_a_terminal_would_obey_is_not_printed(tmp_path, capfd) -> None:

@@ -66,6 +66,7 @@ def test_bad_arguments(capfd, arguments, parts):
         (["--photons", "-5"], ["photons: -5"]),
         (["--passes", "0"], ["passes: 0"]),
         (["--radius", "nan"], ["radius: nan"]),
+        (["--radius", "0.1", "--radius-pixels", "2"], ["radius_pixels: 2.0", "radius in metres"]),
         (["--threads", "0"], ["threads: 0"]),
         (["--device", "gpu"], ["device: 'gpu'", "cuda:0"]),
         (["-o", "missing/out.exr"], ["'missing/out.exr'", "there is no folder"]),
@@ -196,3 +197,29 @@ def test_a_reader_that_stops_reading_is_no_error():
         process.stdout.close()
         assert process.stderr.read() == b""
     assert process.returncode == 0
+
+
+def run_from_shell(arguments, **streams):
+    """The command as a process of its own: its exit status and what is read from its pipes."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    environment.pop("PYTHONUNBUFFERED", None)
+    command = [sys.executable, "-m", "sim.cli", *arguments]
+    return subprocess.run(command, env=environment, text=True, check=False, **streams)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is full")
+def test_a_full_disk_behind_the_output_is_told():
+    with open("/dev/full", "w") as full:
+        done = run_from_shell(["schema"], stdout=full, stderr=subprocess.PIPE)
+        assert (done.returncode, done.stderr) == (2, "nephroid: error: No space left on device\n")
+        # A few lines wait in a buffer until the end.
+        done = run_from_shell(["scenes"], stdout=full, stderr=subprocess.PIPE)
+        assert (done.returncode, done.stderr) == (2, "nephroid: error: No space left on device\n")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is full")
+def test_a_message_that_cannot_be_written_changes_no_status(tmp_path):
+    with open("/dev/full", "w") as full:
+        for arguments, status in ((["info", str(tmp_path / "none.exr")], 2), (["schema"], 0)):
+            done = run_from_shell(arguments, stdout=subprocess.DEVNULL, stderr=full)
+            assert done.returncode == status

@@ -43,6 +43,29 @@ def test_a_run_that_was_left_behind_writes_no_more():
     assert stream.getvalue().count("\n") == 1
 
 
+class Full(io.StringIO):
+    """A disk that takes one line."""
+
+    tries = 0
+
+    def write(self, text):
+        self.tries += 1
+        if self.getvalue().count("\n"):
+            raise OSError(28, "No space left on device")
+        return super().write(text)
+
+
+def test_a_stream_that_takes_no_more_ends_no_run():
+    stream = Full()
+    with progress_display(stream) as show:
+        show(report(stage="trace"))
+        show(report(stage="gather"))
+        before = stream.tries
+        show(report(stage="develop"))
+    assert stream.tries == before
+    assert stream.getvalue() == "pass 3/8, trace: 1.5M of 4M photons\n"
+
+
 def test_lines_come_with_each_new_stage_and_every_two_seconds():
     stream = io.StringIO()
     lines = ProgressLines(stream)

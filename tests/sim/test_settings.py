@@ -77,6 +77,27 @@ def test_a_radius_in_the_scene_is_in_metres():
     assert RenderSettings(radius=1.0).resolved(scene).radius == 1.0
 
 
+def test_a_radius_in_pixels_that_is_asked_for_is_had_whatever_the_scene_says():
+    scene = scenes.loads('title = "t"\n[render]\nradius = 5.0\n')
+
+    def radii(**settings):
+        resolved = RenderSettings(**settings).resolved(scene)
+        again = RenderSettings(**resolved.reproducing()).resolved(scene)
+        assert again == resolved.resolved(scene) == resolved
+        return resolved.radius, resolved.radius_pixels
+
+    assert radii() == (5.0, None)
+    assert radii(radius=1.0) == (1.0, None)
+    assert radii(radius_pixels=3.0) == (None, 3.0)
+    plain = RenderSettings().resolved(scenes.loads('title = "t"\n'))
+    assert (plain.radius, plain.radius_pixels) == (None, DEFAULTS["radius_pixels"])
+
+
+def test_two_radii_are_refused():
+    with pytest.raises(SettingsError, match="none beside a radius in metres"):
+        RenderSettings(radius=1.0, radius_pixels=2.0)
+
+
 def test_a_scene_without_render_table_takes_the_defaults():
     resolved = RenderSettings().resolved(scenes.loads('title = "t"\n'))
     assert {name: getattr(resolved, name) for name in DEFAULTS} == DEFAULTS

@@ -57,6 +57,18 @@ def test_without_a_camera_only_sensors_are_written(folder, capsys):
     assert "band means of irradiance, W m^-2 nm^-1" in capsys.readouterr().out
 
 
+def test_books_of_a_sensor_with_bands_of_its_own_are_those_of_the_film(folder, capsys):
+    # As many as the film has, of other places, would be told from theirs by nothing.
+    film = "[film]\nbands = 2\nfirst_nm = 450\nlast_nm = 650\n\n"
+    for bands in (3, 2):
+        own = SCENE.replace("pixels = [4, 4]", f"pixels = [4, 4]\nbands = {bands}")
+        (folder / "bench.toml").write_text(film + own, "utf-8")
+        assert main(["render", "bench.toml", *SMALL]) == 0
+        assert main(["info", "bench.the-floor.exr"]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        assert [line.split()[:2] for line in lines[-2:]] == [["450", "nm"], ["650", "nm"]]
+
+
 def test_a_picture_still_needs_a_camera(folder, capsys):
     assert main(["render", "bench.toml", *SMALL, "--png", "bench.png"]) != 0
     assert "camera: missing; a picture needs" in capsys.readouterr().err

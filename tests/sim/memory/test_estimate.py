@@ -96,3 +96,29 @@ def test_sensors_count(small_scene):
     found = prospect(seen, pictured=False, photons=10_000, passes=4)
     assert found.film == 0
     assert found.sensors > 1000 * 1000 * 4 * 8 * 2
+
+
+def test_rays_that_a_sensor_keeps_of_many_passes_are_foreseen(small_scene, memory):
+    import scenes
+
+    place = scenes.Disk(position=(0.0, 0.2, 0.0), normal=(0.0, 1.0, 0.0), radius=0.5)
+    rays = scenes.RaySensor(name="rays", shape=place, max_rays=10_000_000)
+    seen = small_scene.model_copy(update={"sensors": (rays,)})
+    memory(200_000_000)  # for 10 million rays it would be 1.7 GB
+
+    def end(progress):
+        assert progress.stage == "compile", "the run has begun"
+
+    with pytest.raises(sim.CapacityError, match="lower max_rays"):
+        sim.measure(seen, sim.RenderSettings(photons=1000, passes=100_000), progress=end)
+
+
+def test_of_a_scene_without_a_camera_no_film_is_told(small_scene, tmp_path, capsys):
+    text = small_scene.source_text
+    start = text.index("[camera]")
+    end = text.find("\n\n", start)
+    (tmp_path / "bench.toml").write_text(text[:start] + (text[end:] if end >= 0 else ""), "utf-8")
+    assert main(["explain", str(tmp_path / "bench.toml")]) == 0
+    (line,) = [one for one in capsys.readouterr().out.splitlines() if one.startswith("memory: ")]
+    assert "film" not in line
+    assert "--memory tells what a run takes" in line

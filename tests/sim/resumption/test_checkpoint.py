@@ -150,6 +150,17 @@ def test_elapsed_time_counts_on(bench, monkeypatch, path):
     assert (picture.stopping, picture.settings.passes) == ("time budget", 4)
 
 
+def test_earlier_time_is_no_round_of_its_own(bench, monkeypatch, path):
+    settings = sim.RenderSettings(**SETTINGS, time_budget=500.0)
+    run_until(monkeypatch, path, 4, lambda one: sim.render(bench, settings, checkpoint=one))
+    stored = read_state(path)
+    # A round takes 1 s, and 200 s are left: taken for one, 300 s would not go in once more.
+    rewrite(path, {**stored.numbers, "seconds": 300.0, "longest_round": 1.0}, stored.arrays)
+    with Checkpoint(path, resume=True) as checkpoint:
+        picture = sim.render(bench, settings, checkpoint=checkpoint)
+    assert (picture.stopping, picture.settings.passes) == ("all passes", 6)
+
+
 def rewrite(path, numbers, arrays):
     path.write_bytes(b"".join(bytes(one) for one in module.encode_state(numbers, arrays)))
 
@@ -250,6 +261,47 @@ def test_a_minutes_work_is_not_thrown_away_unasked(bench, stopped):
     ):
         sim.render(bench, sim.RenderSettings(**SETTINGS), checkpoint=checkpoint)
     assert stopped.read_bytes() == before
+
+
+@pytest.mark.parametrize("seconds", [5.0, 7300.0])
+@pytest.mark.parametrize(
+    ("settings", "difference"),
+    [({"seed": 12}, ("settings.seed", "11", "12")), ({"passes": 4}, ("settings.passes", "5", "4"))],
+)
+def test_that_of_another_run_is_not_said_to_go_on(
+    bench, monkeypatch, path, seconds, settings, difference
+):
+    begun = sim.RenderSettings(**SETTINGS)
+    run_until(monkeypatch, path, 5, lambda one: sim.render(bench, begun, checkpoint=one))
+    stored = read_state(path)
+    rewrite(path, {**stored.numbers, "seconds": seconds}, stored.arrays)
+    told, asked = [], sim.RenderSettings(**{**SETTINGS, **settings})
+    if seconds < module.WORTH_KEEPING_S:
+        with Checkpoint(path, tell=told.append) as checkpoint:
+            sim.render(bench, asked, checkpoint=checkpoint)
+        (text,) = told
+        assert "starting anew" in text
+    else:
+        with pytest.raises(sim.CheckpointError) as caught, Checkpoint(path) as checkpoint:
+            sim.render(bench, asked, checkpoint=checkpoint)
+        text = str(caught.value)
+        assert caught.value.differences == (difference,)
+        assert "--no-resume" in text
+        assert path.exists()
+    assert "5 passes" in text
+    assert "--resume" not in text
+    assert "would have gone on" not in text
+    assert f"{difference[0]}: {difference[1]} in the checkpoint, {difference[2]} asked" in text
+
+
+def test_what_the_file_holds_is_known_before_the_first_pass(bench, stopped):
+    with pytest.raises(Killed), Checkpoint(stopped, resume=True) as checkpoint:
+
+        def stop(progress):
+            raise Killed
+
+        sim.render(bench, sim.RenderSettings(**SETTINGS), checkpoint=checkpoint, progress=stop)
+    assert (checkpoint.passes, checkpoint.made) == (3, 3)
 
 
 def test_a_damaged_one_is_an_error_if_asked_for_and_replaced_if_not(bench, stopped):

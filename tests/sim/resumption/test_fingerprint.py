@@ -44,7 +44,7 @@ def test_words_threads_and_ends_may_differ(small_scene):
     [
         ({"seed": 1}, "settings.seed", "0", "1"),
         ({"photons": 1999}, "settings.photons", "2000", "1999"),
-        ({"radius": 0.1}, "settings.radius", "None", "0.1"),
+        ({"radius_pixels": 3}, "settings.radius_pixels", "2.0", "3.0"),
         ({"precision": "float32"}, "settings.precision", "float64", "float32"),
         ({"passes": 4}, "settings.passes", "odd, or fewer than 4", "even, and 4 or more"),
     ],
@@ -52,6 +52,12 @@ def test_words_threads_and_ends_may_differ(small_scene):
 def test_settings_that_decide_are_told(small_scene, settings, path, stored, asked):
     found = list_differences(fingerprint(small_scene), fingerprint(small_scene, **settings))
     assert found == [(path, stored, asked)]
+
+
+def test_a_radius_in_metres_stands_in_the_place_of_one_in_pixels(small_scene):
+    assert list_differences(fingerprint(small_scene), fingerprint(small_scene, radius=0.1)) == [
+        ("settings.radius", "None", "0.1"), ("settings.radius_pixels", "2.0", "None")
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -91,3 +91,22 @@ def test_a_lock_file_removed_while_it_was_opened_is_made_anew(path, monkeypatch)
 def test_where_there_can_be_no_file_it_says_so(tmp_path):
     with pytest.raises(OutputError, match="No such file or directory"):
         RunLock(tmp_path / "gone" / "out.lock", "out.exr").acquire()
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        ("EWOULDBLOCK", "another run is at it"), ("EACCES", "another run is at it"),
+        ("EIO", r"Input/output error \('.*out.lock'\)"), ("EINTR", "Interrupted system call"),
+    ],
+)  # fmt: skip
+def test_only_a_lock_that_is_held_is_told_as_another_run(path, monkeypatch, code, words):
+    import errno
+    import fcntl
+
+    def flock(descriptor, how):
+        raise OSError(getattr(errno, code), os.strerror(getattr(errno, code)))
+
+    monkeypatch.setattr(fcntl, "flock", flock)
+    with pytest.raises(OutputError, match=words):
+        RunLock(path, "out.exr").acquire()
