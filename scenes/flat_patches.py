@@ -89,12 +89,13 @@ def share_a_place(one: FlatPatch, other: FlatPatch, touch: float) -> bool:
         other: a patch.
         touch: how far apart planes are one, and how wide what is in common must be [m].
     """
-    rounding = 8.0 * _EPS * float(np.abs([one.middle, other.middle]).max())
+    # Coordinates far from the origin are rounded across planes as well as along them.
+    touch = touch + 8.0 * _EPS * float(np.abs([one.middle, other.middle]).max())
     if np.linalg.norm(np.cross(one.normal, other.normal)) > _PARALLEL:
         return False
     between = other.middle - one.middle
     lift = one.normal if np.isinf(one.radius) else other.normal  # a plane's middle may be far
-    if abs(float(between @ lift)) > touch + rounding:
+    if abs(float(between @ lift)) > touch:
         return False
     if np.isinf(one.radius) or np.isinf(other.radius):
         return True

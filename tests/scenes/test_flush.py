@@ -72,6 +72,20 @@ def test_sheets_apart_or_edge_to_edge_are_not(shapes):
         assert not problems_of((one, RED), (other, MIRROR))
 
 
+@pytest.mark.parametrize("x", [1e6, 5e6])
+def test_tiles_edge_to_edge_far_from_the_origin_are_not(x):
+    # A coordinate is known to ε/2 of itself, 5·10⁻¹⁰ m at 5·10⁶ m; 10⁻⁹ of 0.05 m is less.
+    for k in range(8):
+        tile, beside = (plate(x + 0.1 * (k + n), size=(0.1, 0.1)) for n in (0, 1))
+        assert not problems_of((tile, RED), (beside, MIRROR))
+        round_one = disk(x + 0.1 * (k + 1), radius=0.05)
+        assert not problems_of((tile, RED), (round_one, MIRROR))
+        other = disk(x + 0.1 * (k + 2), radius=0.05)
+        assert not problems_of((round_one, RED), (other, MIRROR))
+        (problem,) = problems_of((tile, RED), (plate(x + 0.1 * (k + 0.99)), MIRROR))
+        assert "flush" in problem.message
+
+
 def test_the_same_material_twice_is_the_same_whichever_light_meets():
     assert not problems_of((plate(), RED), (plate(0.5), RED))
 

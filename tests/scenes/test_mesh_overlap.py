@@ -184,6 +184,24 @@ def test_coordinates_in_single_precision_only_touch(files):
     scenes.Scene(objects=[glass("one", rounded, "N-BK7"), glass("other", block, "SF11")])
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_coordinates_far_from_a_files_own_origin_only_touch(files, sign):
+    # In single precision they are known to 2⁻²⁴ of 1234.5, 7e-5, and the cubes' faces as well: by
+    # as much the mesh enters the block, or is apart from it.
+    far = np.array([0.0, sign * 1234.5678, 0.0])
+    points = np.float32(CORNERS + far).astype(np.float64)
+    write_obj(files / "far.obj", points, FACES)
+    apart = Mesh(file=str(files / "far.obj"), position=tuple(-far))
+    off = apart.vertices_world()[:, 1]
+    assert max(abs(off.min() + 0.5), abs(off.max() - 0.5)) > 1e-6
+    for y in (-1.0, 1.0):
+        block = Box(position=(0.0, y, 0.0), **CUBE)
+        scenes.Scene(objects=[glass("one", apart, "N-BK7"), glass("other", block, "SF11")])
+    deep = Box(position=(0.0, 0.999, 0.0), **CUBE)
+    with pytest.raises(SceneError, match="claim the same space"):
+        scenes.Scene(objects=[glass("one", apart, "N-BK7"), glass("other", deep, "SF11")])
+
+
 def test_fine_meshes_are_searched_too(mesh):
     # No timing is asserted: a search that compared all pairs, 6·10⁸, would not come to an end.
     fine = mesh("fine")
