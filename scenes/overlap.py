@@ -131,13 +131,14 @@ def _touch(one: Any, other: Any) -> float:
     """How deep two solids may enter one another and only touch [m]."""
     spheres = [shape.bounding_sphere() for shape in (one, other)]
     meshed = isinstance(one, Triangulated) or isinstance(other, Triangulated)
-    farthest = max(float(np.max(np.abs(centre))) + radius for centre, radius in spheres)
+    farthest = max(float(np.max(np.abs(centre))) + float(radius) for centre, radius in spheres)
     in_files = [
         float(np.max(np.abs(shape.local_surface().vertices)))
         for shape in (one, other) if isinstance(shape, Mesh)
     ]  # fmt: skip
+    smaller = float(min(radius for _, radius in spheres))
     return max(
-        min(radius for _, radius in spheres) * (_TOUCH_OF_MESHES if meshed else _TOUCH),
+        smaller * (_TOUCH_OF_MESHES if meshed else _TOUCH),
         _ROUNDING * farthest,
         _ROUNDING_OF_FILES * max(in_files, default=0.0),
     )

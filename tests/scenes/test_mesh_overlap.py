@@ -133,6 +133,28 @@ def test_how_deep_two_meshes_enter_one_another(mesh, position, name, least, most
         assert least <= depth <= most * (1.0 + 1e-9)
 
 
+def write_cuboids(path, *boxes):
+    """A closed surface of several boxes, each a middle and a size."""
+    points = np.concatenate([CORNERS * np.array(size) + np.array(at) for at, size in boxes])
+    write_obj(path, points, np.concatenate([FACES + 8 * k for k in range(len(boxes))]))
+    return Mesh(file=str(path), position=(0.0, 0.0, 0.0))
+
+
+def test_an_overlap_behind_many_longer_touches_is_found(files):
+    # Three bars whose tops lie in a foil of 1.5 µm: long edges of both are in the other one, and
+    # only touch it, 0.75 µm deep. The corners of two small cubes share 2 mm, of which half is as
+    # deep as a point can be. The pieces of their edges come last.
+    small = (0.01, 0.01, 0.01)
+    at = np.array([-0.4, 0.0, -0.5])
+    bars = [((0.55, y, 0.75e-6 - 0.05), (0.5, 0.2, 0.1)) for y in (0.0, 0.3, 0.6)]
+    one = write_cuboids(files / "bars.obj", bars[0], (at, small), *bars[1:])
+    foil = ((0.0, 0.5, 0.75e-6), (1.0, 3.0, 1.5e-6))
+    for shift, least, most in ((0.008, 0.9e-3, 1e-3), (0.0101, 0.0, TOUCH)):
+        other = write_cuboids(files / f"foil {shift}.obj", foil, (at + shift, small))
+        for pair in ((one, other), (other, one)):
+            assert least <= overlap_depth(*pair, touch=TOUCH) <= most * (1.0 + 1e-9)
+
+
 def test_turned_meshes_are_found_too(mesh):
     # Two bars across one another, 0.2 thick: no corner of either is in the other.
     one, other = mesh("bar"), mesh("bar", (0.0, 0.15, 0.0), (0.0, 70.0, 0.0))

@@ -146,8 +146,8 @@ def test_opaque_solids_may_be_a_crowd():
 
 
 def test_more_searches_than_there_is_time_for_are_refused(monkeypatch):
-    # Balls of 0.2 at a bar's long edge, √2 · 0.145 = 0.205 from it: no direction of a face, nor from
-    # middle to middle, parts them, so that each is searched for.
+    # Balls of 0.2 at a bar's long edge, √2 · 0.145 = 0.205 from it: no direction of a face, nor
+    # from middle to middle, parts them, so that each is searched for.
     bar = Box(position=(0.0, 0.0, 0.0), size=(4.0, 1.0, 1.0))
     balls = [Sphere(position=(x, 0.645, 0.645), radius=0.2) for x in (-1.7, -1.1, 1.1, 1.7)]
     things = [(bar, "N-BK7"), *((ball, "SF11") for ball in balls)]
