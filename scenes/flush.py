@@ -82,7 +82,8 @@ def _are_flush(one: Any, other: Any, touch: float | None) -> bool:
         return False
     sheet, thing = (one, other) if _is_sheet(one) else (other, one)
     (patch,) = flat_patches(sheet, np.array(sheet.normal))
-    return any(share_a_place(patch, face, touch) for face in flat_patches(thing, patch.normal))
+    faces = flat_patches(thing, patch.normal, patch.middle, touch)
+    return any(share_a_place(patch, face, touch) for face in faces)
 
 
 def _problem(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem:
@@ -92,6 +93,7 @@ def _problem(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem:
         allowed = "a gap between them, or the polariser wholly inside the glass or outside it"
     else:
         why = "nothing says which of them light meets"
-        allowed = "a gap between them, or the same material"
+        polarise = any(isinstance(thing.material, Polariser) for thing in (one, other))
+        allowed = "a gap between them" + ("" if polarise else ", or the same material")
     message = f"{names} lie flush in one place, and {why}; allowed: {allowed}"
     return Problem(f"objects[{j}].shape", message, None, allowed)

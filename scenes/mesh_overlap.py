@@ -185,7 +185,7 @@ def _just_inside(corners: FloatArray, touch: float, count: int) -> FloatArray:
 
 
 def _piercing(rows: IntArray, edged: FloatArray, faces: FloatArray, touch: float) -> FloatArray:
-    """(k, 3): middles of the pieces of edges that begin or end in a pierced face, the longest first.
+    """(k, 3): middles of pieces of edges that begin or end in a pierced face, the longest first.
 
     Args:
         rows: (n,) of `edged`: whose edges are followed.
