@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenes.errors import Problem
+from scenes.flush import is_sheet
 from scenes.materials import Dielectric
 from scenes.mesh_overlap import mesh_overlap_depth
 from scenes.objects import SceneObject
-from scenes.shapes import Disk, Mesh, Plane, Rectangle, Triangulated
+from scenes.shapes import Mesh, Triangulated
 from scenes.shapes.depth import height_above
 from scenes.shapes.reach import close_pairs, count_close_pairs, may_meet
 
@@ -85,7 +86,7 @@ def crowd_problems(objects: Mapping[int, SceneObject]) -> list[Problem]:
     pairs = count_close_pairs([one.shape for one in objects.values()])
     if pairs > MAX_CLOSE_PAIRS:
         pairs -= count_close_pairs([one.shape for one in opaque])
-        pairs += count_close_pairs([one.shape for one in opaque if _is_sheet(one.shape)])
+        pairs += count_close_pairs([one.shape for one in opaque if is_sheet(one.shape)])
     if pairs <= MAX_CLOSE_PAIRS:
         return []
     allowed = (
@@ -94,10 +95,6 @@ def crowd_problems(objects: Mapping[int, SceneObject]) -> list[Problem]:
     )
     return [Problem("objects", f"{pairs} pairs are close to each other; allowed: {allowed}", None,
                     allowed)]  # fmt: skip
-
-
-def _is_sheet(shape: Any) -> bool:
-    return isinstance(shape, Rectangle | Disk | Plane)
 
 
 def _triangles(shape: Any) -> int:
