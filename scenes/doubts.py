@@ -8,7 +8,7 @@ merely unusual.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any, Final
 
@@ -73,15 +73,28 @@ def doubts_about(scene: Scene, data: Mapping[str, Any]) -> list[Problem]:
         A problem for each doubt; `allowed` is the guess.
     """
     entries = list(_numbers(data, "", ""))
-    return [
-        *_sizes(scene, data),
-        *_thousandths(entries),
-        *_radians(entries),
-        *_angstroms(entries),
-        *_exposures(entries),
-        *_indices(scene),
-        *_remoteness(scene),
-    ]
+    kinds = (
+        _sizes(scene, data),
+        _thousandths(entries),
+        _radians(entries),
+        _angstroms(entries),
+        _exposures(entries),
+        _indices(scene),
+        _remoteness(scene),
+    )
+    return [doubt for kind in kinds for doubt in _first_few(list(kind))]
+
+
+def _first_few(doubts: list[Problem]) -> list[Problem]:
+    """Those of one kind that are told, the last with how many more there are."""
+    told = doubts[:_MOST_TOLD]
+    if len(doubts) > _MOST_TOLD:
+        more = f" (and {len(doubts) - _MOST_TOLD} more such)"
+        told[-1] = replace(told[-1], message=told[-1].message + more)
+    return told
+
+
+_MOST_TOLD = 3
 
 
 def _doubt(path: str, value: object, guess: str, why: str = "") -> Problem:
@@ -116,14 +129,16 @@ def _sizes(scene: Scene, data: Mapping[str, Any]) -> Iterator[Problem]:
     stated = "length_unit" in data
     other = _OTHER[unit]
     guess = f'{_NAME_OF[other]}, length_unit = "{other}"'
-    for index, one in enumerate(scene.objects):
-        if isinstance(one.shape, Plane):
-            continue
-        size_m = _longest_side(one.shape)
-        is_large = size_m > _LARGEST_M and not stated
-        is_small = size_m < _SMALLEST_M and unit == "mm"
+    sizes_m = {
+        index: _longest_side(one.shape)
+        for index, one in enumerate(scene.objects)
+        if not isinstance(one.shape, Plane)
+    }
+    # Millimetres are stated, so that one tiny thing is believed; not if there is nothing else.
+    all_small = unit == "mm" and max(sizes_m.values(), default=0.0) < _SMALLEST_M
+    for index, size_m in sizes_m.items():
         # In a file in metres that is too small for a bench, millimetres would be smaller still.
-        if is_large or is_small:
+        if (size_m > _LARGEST_M and not stated) or all_small:
             across = f"{size_m * scale:.3g} {unit} across"
             yield _doubt(f"objects[{index}].shape", across, guess)
         elif size_m < _SMALLEST_M and not stated:
@@ -164,6 +179,8 @@ def _thousandths(entries: list[_Entry]) -> Iterator[Problem]:
         if len(group) > _MOST_COMPARED:
             continue
         for a, b in combinations(group.values(), 2):
+            if a.path.partition(".")[0] == b.path.partition(".")[0]:
+                continue  # two sides of a thin pane
             if math.isclose(max(a.value, b.value), 1000.0 * min(a.value, b.value), rel_tol=1e-9):
                 why = f"{a.path} is {a.value:g}, exactly 1000 times more or less"
                 yield _doubt(b.path, b.value, f"{a.value:g}", why)
@@ -178,14 +195,33 @@ def _radians(entries: list[_Entry]) -> Iterator[Problem]:
         if not one.key.endswith("_deg") or not 0.0 < abs(one.value) <= 2.0 * math.pi + 0.01:
             continue
         digits = len(repr(one.value).partition(".")[2])
+        significant = len(repr(abs(one.value)).replace(".", "").lstrip("0"))
         meant_deg = 5.0 * round(math.degrees(one.value) / 5.0)
         slack = 0.5001 * 10.0**-digits + 4.0 * math.ulp(one.value)
-        if digits >= 3 and meant_deg and abs(one.value - math.radians(meant_deg)) <= slack:
+        is_round = meant_deg and abs(one.value - math.radians(meant_deg)) <= slack
+        if significant >= _SIGNIFICANT and is_round and _is_allowed(one, meant_deg):
             why = f"{one.value:.6g} radians are {meant_deg:g} degrees"
             yield _doubt(one.path, one.value, f"{meant_deg:g}", why)
         elif one.key == "fov_deg" and one.value < 0.5 * math.pi:
             yield _doubt(one.path, one.value, f"{math.degrees(one.value):.3g}",
                          "a very narrow field of view, in degrees")  # fmt: skip
+
+
+_SIGNIFICANT = 4
+"""Digits of an angle that say more than chance: of three, one value in a hundred is near 5°."""
+
+_MOST_DEG = {
+    "fov_deg": 179.0, "apex_deg": 179.0, "divergence_deg": 89.0, "ellipticity_deg": 45.0,
+}  # fmt: skip
+"""How large angles may be, in multiples of 5° and a bit; others may be any."""
+
+
+def _is_allowed(one: _Entry, angle_deg: float) -> bool:
+    """Whether the field could be this angle."""
+    most = _MOST_DEG.get(one.key, math.inf)
+    if one.key == "half_angle_deg":
+        most = 180.0 if one.table.get("type") == "spot" else 89.0
+    return abs(angle_deg) <= most
 
 
 def _angstroms(entries: list[_Entry]) -> Iterator[Problem]:

@@ -18,7 +18,8 @@ FloatArray = NDArray[np.float64]
 _PARALLEL = 1e-9
 """Sine of the angle between normals that count as parallel."""
 
-_EPS = float(np.finfo(np.float64).eps)
+_ROUNDING = 8.0 * float(np.finfo(np.float64).eps)
+"""Of the largest coordinate: how far apart what is meant to be in one place can be."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +39,16 @@ class FlatPatch:
     radius: float = 0.0
 
 
-def flat_patches(shape: Any, along: FloatArray) -> Iterator[FlatPatch]:
+def flat_patches(
+    shape: Any, along: FloatArray, near: FloatArray | None = None, slack: float = 0.0
+) -> Iterator[FlatPatch]:
     """Every flat part of a shape: of a lens its plane surfaces, of a mesh its triangles.
 
     Args:
         shape: any shape.
         along: (3,) unit; only the triangles with this normal, or its opposite, count.
+        near: (3,) a point; only the triangles in its plane count; None: all [m].
+        slack: how far from that plane they may be, rounding aside [m].
     """
     none = np.zeros((0, 3))
     if isinstance(shape, Plane | Disk):
@@ -63,6 +68,11 @@ def flat_patches(shape: Any, along: FloatArray) -> Iterator[FlatPatch]:
         normals = triangles.facet_normals
         some = _PARALLEL >= np.linalg.norm(np.cross(normals, along), axis=1)
         corners = shape.vertices_world()[triangles.triangles]
+        if near is not None:
+            between = corners[:, 0] - near
+            farthest = max(float(np.abs(corners).max(initial=0.0)), float(np.abs(near).max()))
+            aslant = _PARALLEL * np.linalg.norm(between, axis=1)
+            some &= np.abs(between @ along) <= slack + _ROUNDING * farthest + aslant
         for row in np.flatnonzero(some):
             yield FlatPatch(corners[row, 0], normals[row], corners[row])
     elif isinstance(shape, ConvexSolid):
@@ -89,12 +99,13 @@ def share_a_place(one: FlatPatch, other: FlatPatch, touch: float) -> bool:
         other: a patch.
         touch: how far apart planes are one, and how wide what is in common must be [m].
     """
-    rounding = 8.0 * _EPS * float(np.abs([one.middle, other.middle]).max())
+    # Coordinates far from the origin are rounded across planes as well as along them.
+    touch = touch + _ROUNDING * float(np.abs([one.middle, other.middle]).max())
     if np.linalg.norm(np.cross(one.normal, other.normal)) > _PARALLEL:
         return False
     between = other.middle - one.middle
     lift = one.normal if np.isinf(one.radius) else other.normal  # a plane's middle may be far
-    if abs(float(between @ lift)) > touch + rounding:
+    if abs(float(between @ lift)) > touch:
         return False
     if np.isinf(one.radius) or np.isinf(other.radius):
         return True

@@ -20,7 +20,7 @@ from scenes.polariser import Polariser
 from scenes.shapes import Disk, Plane, Rectangle
 from scenes.shapes.reach import close_pairs, may_meet
 
-__all__ = ["flush_pairs", "flush_problems"]
+__all__ = ["flush_pairs", "flush_problems", "is_sheet"]
 
 _TOUCH = 1e-9
 """Faces nearer than this part of the smaller one's size are in one place, as in
@@ -48,7 +48,7 @@ def flush_pairs(
     filters = any(isinstance(one.material, Polariser) for one in objects.values())
     indices = [
         index for index, one in objects.items()
-        if (filters if isinstance(one.material, Dielectric) else _is_sheet(one.shape))
+        if (filters if isinstance(one.material, Dielectric) else is_sheet(one.shape))
     ]  # fmt: skip
     shapes = [objects[index].shape for index in indices]
     for first, second in close_pairs(shapes, touch or 0.0):
@@ -59,7 +59,8 @@ def flush_pairs(
             yield i, j
 
 
-def _is_sheet(shape: Any) -> bool:
+def is_sheet(shape: Any) -> bool:
+    """Whether a shape is flat and has no inside."""
     return isinstance(shape, Rectangle | Disk | Plane)
 
 
@@ -80,9 +81,10 @@ def _are_flush(one: Any, other: Any, touch: float | None) -> bool:
         touch = _TOUCH * float(min(sizes, default=1.0))
     if not may_meet(one, other, touch):
         return False
-    sheet, thing = (one, other) if _is_sheet(one) else (other, one)
+    sheet, thing = (one, other) if is_sheet(one) else (other, one)
     (patch,) = flat_patches(sheet, np.array(sheet.normal))
-    return any(share_a_place(patch, face, touch) for face in flat_patches(thing, patch.normal))
+    faces = flat_patches(thing, patch.normal, patch.middle, touch)
+    return any(share_a_place(patch, face, touch) for face in faces)
 
 
 def _problem(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem:
@@ -92,6 +94,7 @@ def _problem(i: int, one: SceneObject, j: int, other: SceneObject) -> Problem:
         allowed = "a gap between them, or the polariser wholly inside the glass or outside it"
     else:
         why = "nothing says which of them light meets"
-        allowed = "a gap between them, or the same material"
+        polarise = any(isinstance(thing.material, Polariser) for thing in (one, other))
+        allowed = "a gap between them" + ("" if polarise else ", or the same material")
     message = f"{names} lie flush in one place, and {why}; allowed: {allowed}"
     return Problem(f"objects[{j}].shape", message, None, allowed)

@@ -8,12 +8,12 @@ deepest inside the other solid, and one inner point decides what is left.
 - Against a convex solid of flat faces, and against a lens, triangles are cut into ever smaller ones
   where the depth may still be more than the deepest found: by the faces' planes, which is exact, of
   a lens by how steep its height can be, down to 1/64 of a triangle's side.
-- Against triangles, every edge is tested against every face near it, and the longest pieces behind
-  pierced faces are asked how deep they are; if none is, so are points behind some triangles. The
-  depth found is never too much, and often too little. It can miss solids that share space without
-  an edge through a face's inside, as twins shifted along their own edges do, if no point that is
-  asked is in both; and, of more than 131,072 pairs of triangles near one another, or 262,144
-  triangles, those that are not followed.
+- Against triangles, every edge is tested against every face near it, and the pieces behind pierced
+  faces are asked how deep they are, the longest first, 256 at most; if none is, so are points
+  behind some triangles. The depth found is never too much, and often too little. It can miss solids
+  that share space without an edge through a face's inside, as twins shifted along their own edges
+  do, if no point that is asked is in both; and, of more than 131,072 pairs of triangles near one
+  another, or 262,144 triangles, those that are not followed.
 """
 
 from typing import Any
@@ -41,6 +41,11 @@ _MOST = 1 << 17
 """Triangles, and pairs of them, that are followed at once: time, and memory, are bounded."""
 
 _PROBES = 8
+"""Points that are asked in any case: which of them is deepest is told."""
+
+_MOST_PROBES = 256
+"""Points that are asked, one after the other, until one is inside both solids."""
+
 _ASKED = 1 << 20
 """Points of which the depth inside triangles is found, at most; each asks all of the triangles, and
 all together about this many, so that the largest meshes do not keep a scene from loading."""
@@ -133,27 +138,37 @@ def _between_meshes(one: FloatArray, other: FloatArray, touch: float) -> float:
     ]
     if np.any(low > high) or not (len(near[0]) and len(near[1])):
         return 0.0
-    probe = max(1, min(_PROBES, _ASKED // max(len(one), len(other))))
+    most = max(1, min(_MOST_PROBES, _ASKED // max(len(one), len(other))))
     steps = [1 + len(corners) // (2 * _MOST) for corners in near]
     near = [corners[::step] for corners, step in zip(near, steps, strict=True)]
     i, j = box_pairs(near[0], near[1], _MOST)
     sides = ((near[0], near[1][j], i, other), (near[1], near[0][i], j, one))
     probes = [
-        (_piercing(rows, mine, faces, touch)[:probe], whole) for mine, faces, rows, whole in sides
+        (_piercing(rows, mine, faces, touch)[:most], whole) for mine, faces, rows, whole in sides
     ]
-    depth = _deepest_of(probes)
+    depth = _deepest_of(probes, touch)
     if depth <= touch:
-        probes = [(_just_inside(mine, touch, probe), whole) for mine, _, _, whole in sides]
-        depth = _deepest_of(probes)
+        few = min(_PROBES, most)
+        probes = [(_just_inside(mine, touch, few), whole) for mine, _, _, whole in sides]
+        depth = _deepest_of(probes, touch)
     if depth > touch:
         for middle in (0.5 * (low + high), one.mean(axis=(0, 1)), other.mean(axis=(0, 1))):
             depth = max(depth, min(depth_inside(middle, one), depth_inside(middle, other)))
     return depth
 
 
-def _deepest_of(probes: list[tuple[FloatArray, FloatArray]]) -> float:
-    """Of points (k, 3), each with the triangles that it may be inside; 0 if none is."""
-    return max([0.0, *(depth_inside(point, whole) for points, whole in probes for point in points)])
+def _deepest_of(probes: list[tuple[FloatArray, FloatArray]], touch: float) -> float:
+    """Of points (k, 3), each with the triangles that it may be inside; 0 if none is.
+
+    Of the first few it is the deepest; more are asked until one is deeper than `touch`.
+    """
+    depth = 0.0
+    for points, whole in probes:
+        for row, point in enumerate(points):
+            if row >= _PROBES and depth > touch:
+                break
+            depth = max(depth, depth_inside(point, whole))
+    return depth
 
 
 def _just_inside(corners: FloatArray, touch: float, count: int) -> FloatArray:
@@ -170,7 +185,7 @@ def _just_inside(corners: FloatArray, touch: float, count: int) -> FloatArray:
 
 
 def _piercing(rows: IntArray, edged: FloatArray, faces: FloatArray, touch: float) -> FloatArray:
-    """(k, 3): middles of the longest pieces of edges that begin or end in a pierced face.
+    """(k, 3): middles of pieces of edges that begin or end in a pierced face, the longest first.
 
     Args:
         rows: (n,) of `edged`: whose edges are followed.
@@ -203,7 +218,7 @@ def _piercing(rows: IntArray, edged: FloatArray, faces: FloatArray, touch: float
     after = np.where(np.roll(fresh, -1), 1.0, np.roll(share, -1))
     first, last = np.where(enter, share, before), np.where(enter, after, share)
     a, b = edged[edge // 3, edge % 3], edged[edge // 3, (edge + 1) % 3]
-    longest = np.argsort(-np.linalg.norm(b - a, axis=1) * (last - first), kind="stable")[:_PROBES]
+    longest = np.argsort(-np.linalg.norm(b - a, axis=1) * (last - first), kind="stable")
     middles = a + (0.5 * (first + last))[:, None] * (b - a)
     return np.asarray(middles[longest])
 

@@ -39,7 +39,8 @@ def nearby_file(name: str, info: ValidationInfo, *, field: str = "file") -> Path
             return path.resolve()
     except PydanticCustomError:  # is a ValueError too
         raise
-    except (OSError, ValueError) as error:  # no path can look like this
+    # No path can look like this; a link to itself is a RuntimeError before Python 3.13.
+    except (OSError, ValueError, RuntimeError) as error:
         raise refusal(Problem(field, f"{shown(name)} cannot be a path: {error}", name)) from None
     where = f"in {folder}" if folder is not None else "there"
     message = f"there is no file {shown(name)} {where}"

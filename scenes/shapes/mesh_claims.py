@@ -8,7 +8,7 @@ import json
 import struct
 from typing import Any
 
-__all__ = ["refuse_false_claims"]
+__all__ = ["is_text_stl", "refuse_false_claims"]
 
 _HEADER_BYTES = 64 * 1024
 _JSON_BYTES = 8 * 1024 * 1024
@@ -64,14 +64,33 @@ def _element(words: list[str]) -> tuple[str, int]:
     return words[1][:40], int(words[2])
 
 
+def is_text_stl(content: bytes) -> bool:
+    """Whether an STL file is of text, which begins "solid".
+
+    The free header of a binary one may begin so as well: it is as long as its count says. Of text,
+    these four bytes are characters, which no file of 64 MB is long enough for.
+    """
+    return content.lstrip()[:5].lower() == b"solid" and not _is_as_long_as_it_says(content)
+
+
+def _is_as_long_as_it_says(content: bytes) -> bool:
+    return len(content) >= _STL_START and (
+        len(content) == _STL_START + _STL_TRIANGLE * _stl_count(content)
+    )
+
+
+def _stl_count(content: bytes) -> int:
+    return int(struct.unpack_from("<I", content, _STL_START - 4)[0])
+
+
 def _check_stl(content: bytes) -> None:
-    """Of a binary one, the number of its triangles says how long it is; others begin "solid"."""
-    if content.lstrip()[:5].lower() == b"solid":
+    """Of a binary one, the number of its triangles says how long it is."""
+    if is_text_stl(content):
         return
     if len(content) < _STL_START:
         raise ValueError("it is cut off")
-    (count,) = struct.unpack_from("<I", content, _STL_START - 4)
-    if len(content) != _STL_START + _STL_TRIANGLE * count:
+    if not _is_as_long_as_it_says(content):
+        count = _stl_count(content)
         raise ValueError(f"its header claims {count} triangles, which is not what its length says")
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from scenes.fields import MAX_LENGTH_M, MIN_SIZE_M
 from scenes.file_content import file_content
-from scenes.shapes.mesh_claims import refuse_false_claims
+from scenes.shapes.mesh_claims import is_text_stl, refuse_false_claims
 from scenes.shapes.surface import Surface
 
 __all__ = ["MAX_TRIANGLES", "MESH_FORMATS", "NormalsChoice", "read_surface"]
@@ -119,7 +119,7 @@ def _corners(
 
 def _plain(content: bytes, kind: str) -> bytes:
     """Text in UTF-8, whatever it was in: its numbers are ASCII, and all else does not count."""
-    if kind == "obj" or (kind == "stl" and content.lstrip()[:5].lower() == b"solid"):
+    if kind == "obj" or (kind == "stl" and is_text_stl(content)):
         return content.decode("latin-1").encode("utf-8")
     return content
 

@@ -10,6 +10,7 @@ import pytest
 import scenes
 import sim
 from sim.errors import FileFormatError
+from sim.image import exr_claims
 from sim.image.exr import encode_channels
 from sim.image.exr_layout import EMISSIVE_UNITS, radiance_channel
 
@@ -171,6 +172,19 @@ def test_an_exr_that_claims_too_much(tmp_path, window, words) -> None:
     with pytest.raises(FileFormatError) as caught:
         sim.read_exr(path)
     assert words in str(caught.value)
+
+
+def test_a_black_picture_of_our_own_is_no_bomb(tmp_path, monkeypatch) -> None:
+    # As if it were larger than what is read whatever it claims: it shrinks by more than 64 times,
+    # and by less than any file can.
+    monkeypatch.setattr(exr_claims, "_ALWAYS_READ", 0)
+    path = tmp_path / "black.exr"
+    path.write_bytes(exr(shape=(1024, 1024)))
+    assert 64 < 4 * 1024**2 / path.stat().st_size < 1024
+    assert sim.read_exr(path).spectral_radiance.shape == (1024, 1024, 1)
+    path.write_bytes(with_window(path.read_bytes(), 0, 0, 99_999, 99_999))
+    with pytest.raises(FileFormatError, match="it claims 40000000000 bytes of pixels"):
+        sim.read_exr(path)
 
 
 @pytest.mark.parametrize("text", ["{", "[1]", "[" * 100_000, "NaN", '{"a": '])

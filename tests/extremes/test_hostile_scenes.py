@@ -101,7 +101,7 @@ HOSTILE = {
     ),
     "a crowd": (
         "".join(
-            SPHERE.format(0) + f'name = "{i}"\nmaterial = {{ type = "absorber" }}\n'
+            SPHERE.format(0) + f'name = "{i}"\n' + GLASS.format(1.5)
             for i in range(450)
         ),
         "at most 100000 pairs",

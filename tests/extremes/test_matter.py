@@ -7,8 +7,17 @@ import numpy as np
 import pytest
 
 import scenes
+from sim.analytic_conductor import conductor_reflectance
 from sim.errors import SettingsError
-from spectra import WavelengthOutOfRange, glass, glasses
+from spectra import (
+    WavelengthOutOfRange,
+    absorbing_media,
+    conductor,
+    conductors,
+    glass,
+    glasses,
+    published_absorption,
+)
 
 mpmath.mp.dps = 40
 
@@ -26,8 +35,7 @@ WAY = np.array([SINE, -math.sqrt(1.0 - SINE**2), 0.0])
 
 @pytest.mark.parametrize("name", sorted(glasses()))
 def test_every_medium_to_the_ends_of_its_range_and_no_further(follow, eps, name):
-    low, high = glass(name).wavelength_range_nm
-    ends = np.array([low, math.nextafter(low, math.inf), math.nextafter(high, 0.0), high])
+    ends, beyond = ends_of(*glass(name).wavelength_range_nm)
     for precision in ("float64", "float32"):
         paths = follow([plate(name)], -WAY, WAY, ends, precision=precision)
         for wavelength_nm, path in zip(ends, paths, strict=True):
@@ -37,20 +45,90 @@ def test_every_medium_to_the_ends_of_its_range_and_no_further(follow, eps, name)
             inside = path.directions[1]
             slack = 16 * eps[precision] + 8.0 * eps[precision] * steepness(name, wavelength_nm)
             assert inside[0] == pytest.approx(SINE / eta, rel=0, abs=slack)
-    for wavelength_nm in (math.nextafter(low, 0.0), math.nextafter(high, math.inf)):
+    for wavelength_nm in beyond:
         with pytest.raises(WavelengthOutOfRange):
             follow([plate(name)], -WAY, WAY, wavelength_nm)
 
 
 def steepness(name, wavelength_nm):
     """λ |dη/dλ| toward the inside of the range."""
-    medium = glass(name)
-    low, high = medium.wavelength_range_nm
+    return slope(glass(name).eta, glass(name).wavelength_range_nm, wavelength_nm)
+
+
+def slope(of, range_nm, wavelength_nm):
+    """λ |df/dλ| of a function of the wavelength [nm], toward the inside of its range."""
+    low, high = range_nm
     other = min(max(wavelength_nm * (1.0 + 1e-4), low), high)
-    if other == wavelength_nm:
+    if other <= wavelength_nm * (1.0 + 1e-8):
         other = wavelength_nm * (1.0 - 1e-4)
-    rise = float(medium.eta(other)) - float(medium.eta(float(wavelength_nm)))
+    rise = float(of(other)) - float(of(float(wavelength_nm)))
     return abs(rise / (other / wavelength_nm - 1.0))
+
+
+def ends_of(low, high):
+    """Both ends of a range, one ulp inside them, and one ulp beyond."""
+    inside = [low, math.nextafter(low, math.inf), math.nextafter(high, 0.0), high]
+    return np.array(inside), (math.nextafter(low, 0.0), math.nextafter(high, math.inf))
+
+
+@pytest.mark.parametrize("name", conductors())
+def test_every_metal_to_the_ends_of_its_range_and_no_further(follow, eps, name):
+    metal = conductor(name)
+    sheet = scenes.SceneObject(
+        name="sheet", material=scenes.Metal(metal=name),
+        shape=scenes.Disk(position=(0.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), radius=1.0),
+    )  # fmt: skip
+
+    def reflectance(wavelength_nm):
+        # Natural light: R = (R_s + R_p)/2, Born & Wolf 1999, §14.2.
+        cosine = math.sqrt(1.0 - SINE**2)
+        eta, k = float(metal.eta(wavelength_nm)), float(metal.k(wavelength_nm))
+        return 0.5 * sum(map(float, conductor_reflectance(cosine, 1.0, eta, k)))
+
+    ends, beyond = ends_of(*metal.wavelength_range_nm)
+    # Glass below, which no light reaches, so that there is a medium as elsewhere here.
+    glass_below = scenes.SceneObject(
+        shape=scenes.Sphere(position=(0.0, -2.0, 0.0), radius=0.5),
+        material=scenes.Dielectric(medium=scenes.ConstantMedium(eta=1.5)),
+    )
+    objects = [sheet, glass_below]
+    for precision in ("float64", "float32"):
+        paths = follow(objects, -WAY, WAY, ends, precision=precision)
+        for wavelength_nm, path in zip(ends, paths, strict=True):
+            assert path.events == ("mirror", "escape")
+            # As above: some dozens of roundings, and the wavelength's own by R's slope.
+            steep = slope(reflectance, metal.wavelength_range_nm, wavelength_nm)
+            slack = (16.0 + 8.0 * steep) * eps[precision]
+            assert path.transmittance == pytest.approx(
+                reflectance(float(wavelength_nm)), rel=0, abs=slack
+            )
+    for wavelength_nm in beyond:
+        with pytest.raises(WavelengthOutOfRange):
+            follow(objects, -WAY, WAY, wavelength_nm)
+
+
+@pytest.mark.parametrize("name", absorbing_media())
+def test_every_published_absorption_to_the_ends_of_its_range_and_no_further(follow, eps, name):
+    absorption, depth = published_absorption(name), 0.5
+    ranges = np.array([absorption.wavelength_range_nm, glass(name).wavelength_range_nm])
+    low, high = float(ranges[:, 0].max()), float(ranges[:, 1].min())
+    ends, beyond = ends_of(low, high)
+    objects = [plate(name, depth, "published")]
+    down = ((0.0, 1.0, 0.0), (0.0, -1.0, 0.0))
+    for precision in ("float64", "float32"):
+        for wavelength_nm, path in zip(
+            ends, follow(objects, *down, ends, precision=precision), strict=True
+        ):
+            # A = 1 − exp(−α d), off by d δα at most; δα as above.
+            alpha = float(absorption.coefficient(float(wavelength_nm)))
+            steep = slope(absorption.coefficient, (low, high), wavelength_nm)
+            slack = 8.0 * eps[precision] * (1.0 + depth * (alpha + steep))
+            assert path.absorptances[1] == pytest.approx(
+                -math.expm1(-alpha * depth), rel=0, abs=slack
+            )
+    for wavelength_nm in beyond:
+        with pytest.raises(WavelengthOutOfRange):
+            follow(objects, *down, wavelength_nm)
 
 
 @pytest.mark.parametrize("wavelength_nm", [0.0, -550.0, math.nan, math.inf, 5e-324, 1e308])

@@ -120,6 +120,76 @@ def test_one_of_two_alike_in_another_unit_is_told() -> None:
         scenes.loads(text)
 
 
+def told_of(text) -> list[str]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        scenes.loads(text)
+    return [str(one.message) for one in caught]
+
+
+THING = '[[objects]]\nshape = {{ {} }}\nmaterial = {{ type = "absorber" }}\n'
+
+
+def test_the_sides_of_one_thing_may_be_a_thousand_times_one_another() -> None:
+    pane = THING.format('type = "box", position = [0, 0, 0], size = [1.0, 1.0, 0.001]')
+    assert told_of(pane) == []
+
+
+def lenslets(count, size) -> str:
+    return "".join(
+        THING.format(f'type = "sphere", position = [{k}, 0, 0], radius = {size}')
+        for k in range(count)
+    )
+
+
+def test_tiny_things_in_stated_millimetres_are_believed_beside_larger_ones() -> None:
+    # 300 lenslets of 50 µm on a holder of 400 mm; alone, they are 0.05 m.
+    head = 'length_unit = "mm"\n'
+    holder = THING.format('type = "box", position = [0, -5, 0], size = [400, 1, 1]')
+    assert told_of(head + lenslets(300, 0.025) + holder) == []
+    assert all('length_unit = "m"' in one for one in told_of(head + lenslets(2, 0.025)))
+
+
+def test_of_many_slips_of_a_kind_three_are_told() -> None:
+    told = told_of(lenslets(300, 2.5e-5))
+    assert [one.split(":")[0] for one in told] == [f"objects[{k}].shape" for k in range(3)]
+    assert [one.endswith(" (and 297 more such)") for one in told] == [False, False, True]
+    assert len(told_of(lenslets(3, 2.5e-5))) == 3
+    assert "more such" not in told_of(lenslets(3, 2.5e-5))[-1]
+
+
+LAMP = """
+[[emitters]]
+type = "{}"
+position = [0, 0, 0]
+direction = [0, 0, 1]
+flux = 1
+spectrum = "E"
+half_angle_deg = {}
+"""
+
+
+@pytest.mark.parametrize(
+    ("lamp", "given", "guess"),
+    [
+        ("spot", 0.262, None),  # 15° in radians to three digits, as one value in a hundred is
+        ("spot", 0.2618, "15"),
+        ("spot", 1.571, "90"),
+        ("spot", 3.1416, "180"),
+        ("spot", 3.2289, None),  # 185°, which no cone can have
+    ],
+)
+def test_radians_are_told_by_four_digits_within_the_fields_range(lamp, given, guess) -> None:
+    told = told_of(LAMP.format(lamp, given))
+    expected = [] if guess is None else [f"did you mean {guess}?"]
+    assert [one[one.index("did") :] for one in told] == expected
+
+
+def test_a_field_of_view_is_guessed_within_its_range() -> None:
+    assert doubts(fov=2.618)["camera.fov_deg"].endswith("did you mean 150?")
+    assert doubts(fov=3.1416) == {}
+
+
 @pytest.mark.parametrize(
     ("given", "guess"),
     [("0.55", "micrometres; did you mean 550 nm?"), ("5.5e-7", "metres; did you mean 550 nm?")],

@@ -63,13 +63,30 @@ def test_two_opaque_sheets_in_one_place_are_refused(shapes):
             assert problem.path == "objects[1].shape"
             assert "'b' and 'a' lie flush in one place" in problem.message
             assert "nothing says which of them light meets" in problem.message
-            assert "gap" in problem.allowed
+            # Two polarisers are no sheet of one material: what each lets through differs.
+            either = "" if SHEET in materials else ", or the same material"
+            assert problem.allowed == "a gap between them" + either
+            assert problem.message.endswith(problem.allowed)
 
 
 @pytest.mark.parametrize("shapes", CLEAR)
 def test_sheets_apart_or_edge_to_edge_are_not(shapes):
     for one, other in (shapes, shapes[::-1]):
         assert not problems_of((one, RED), (other, MIRROR))
+
+
+@pytest.mark.parametrize("x", [1e6, 5e6])
+def test_tiles_edge_to_edge_far_from_the_origin_are_not(x):
+    # A coordinate is known to ε/2 of itself, 5·10⁻¹⁰ m at 5·10⁶ m; 10⁻⁹ of 0.05 m is less.
+    for k in range(8):
+        tile, beside = (plate(x + 0.1 * (k + n), size=(0.1, 0.1)) for n in (0, 1))
+        assert not problems_of((tile, RED), (beside, MIRROR))
+        round_one = disk(x + 0.1 * (k + 1), radius=0.05)
+        assert not problems_of((tile, RED), (round_one, MIRROR))
+        other = disk(x + 0.1 * (k + 2), radius=0.05)
+        assert not problems_of((round_one, RED), (other, MIRROR))
+        (problem,) = problems_of((tile, RED), (plate(x + 0.1 * (k + 0.99)), MIRROR))
+        assert "flush" in problem.message
 
 
 def test_the_same_material_twice_is_the_same_whichever_light_meets():
@@ -134,6 +151,27 @@ def test_a_polariser_inside_through_or_tangent_to_glass_is_allowed():
         assert not problems_of((ball, GLASS), (sheet, SHEET))
     curved = plano_convex(first=LensSurface(radius=3.0))
     assert not problems_of((curved, GLASS), (plate(size=(0.1, 0.1)), SHEET))
+
+
+def test_only_triangles_at_a_sheets_height_are_looked_at(monkeypatch):
+    # The flat bottom of a height field has as many triangles as the rest of it, all parallel.
+    looked_at = []
+
+    def counted(one, other, touch):
+        looked_at.append(other)
+        return share_a_place(one, other, touch)
+
+    monkeypatch.setattr(scenes.flush, "share_a_place", counted)
+    water = scenes.HeightField(
+        position=(0.0, 0.0, 0.0), size=(1.0, 1.0), depth=0.5, cells=(20, 20),
+        waves=[{"amplitude": 0.01, "period": 0.7}],
+    )  # fmt: skip
+    for y in (-0.25, -0.5 + 1e-6, -0.5 - 1e-6):
+        assert not problems_of((water, GLASS), (plate(y=y, size=(0.2, 0.2)), SHEET))
+    assert not looked_at
+    (problem,) = problems_of((water, GLASS), (plate(y=-0.5, size=(0.2, 0.2)), SHEET))
+    assert "lie flush" in problem.message
+    assert looked_at
 
 
 def test_the_faces_of_a_box_are_its_six_squares():

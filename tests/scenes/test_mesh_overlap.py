@@ -133,6 +133,28 @@ def test_how_deep_two_meshes_enter_one_another(mesh, position, name, least, most
         assert least <= depth <= most * (1.0 + 1e-9)
 
 
+def write_cuboids(path, *boxes):
+    """A closed surface of several boxes, each a middle and a size."""
+    points = np.concatenate([CORNERS * np.array(size) + np.array(at) for at, size in boxes])
+    write_obj(path, points, np.concatenate([FACES + 8 * k for k in range(len(boxes))]))
+    return Mesh(file=str(path), position=(0.0, 0.0, 0.0))
+
+
+def test_an_overlap_behind_many_longer_touches_is_found(files):
+    # Three bars whose tops lie in a foil of 1.5 µm: long edges of both are in the other one, and
+    # only touch it, 0.75 µm deep. The corners of two small cubes share 2 mm, of which half is as
+    # deep as a point can be. The pieces of their edges come last.
+    small = (0.01, 0.01, 0.01)
+    at = np.array([-0.4, 0.0, -0.5])
+    bars = [((0.55, y, 0.75e-6 - 0.05), (0.5, 0.2, 0.1)) for y in (0.0, 0.3, 0.6)]
+    one = write_cuboids(files / "bars.obj", bars[0], (at, small), *bars[1:])
+    foil = ((0.0, 0.5, 0.75e-6), (1.0, 3.0, 1.5e-6))
+    for shift, least, most in ((0.008, 0.9e-3, 1e-3), (0.0101, 0.0, TOUCH)):
+        other = write_cuboids(files / f"foil {shift}.obj", foil, (at + shift, small))
+        for pair in ((one, other), (other, one)):
+            assert least <= overlap_depth(*pair, touch=TOUCH) <= most * (1.0 + 1e-9)
+
+
 def test_turned_meshes_are_found_too(mesh):
     # Two bars across one another, 0.2 thick: no corner of either is in the other.
     one, other = mesh("bar"), mesh("bar", (0.0, 0.15, 0.0), (0.0, 70.0, 0.0))
@@ -182,6 +204,24 @@ def test_coordinates_in_single_precision_only_touch(files):
     rounded = Mesh(file=str(files / "rounded.obj"), position=(-0.3, -0.7, -0.1))
     block = Box(position=(0.0, 1.0, 0.0), **CUBE)
     scenes.Scene(objects=[glass("one", rounded, "N-BK7"), glass("other", block, "SF11")])
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_coordinates_far_from_a_files_own_origin_only_touch(files, sign):
+    # In single precision they are known to 2⁻²⁴ of 1234.5, 7e-5, and the cubes' faces as well: by
+    # as much the mesh enters the block, or is apart from it.
+    far = np.array([0.0, sign * 1234.5678, 0.0])
+    points = np.float32(CORNERS + far).astype(np.float64)
+    write_obj(files / "far.obj", points, FACES)
+    apart = Mesh(file=str(files / "far.obj"), position=tuple(-far))
+    off = apart.vertices_world()[:, 1]
+    assert max(abs(off.min() + 0.5), abs(off.max() - 0.5)) > 1e-6
+    for y in (-1.0, 1.0):
+        block = Box(position=(0.0, y, 0.0), **CUBE)
+        scenes.Scene(objects=[glass("one", apart, "N-BK7"), glass("other", block, "SF11")])
+    deep = Box(position=(0.0, 0.999, 0.0), **CUBE)
+    with pytest.raises(SceneError, match="claim the same space"):
+        scenes.Scene(objects=[glass("one", apart, "N-BK7"), glass("other", deep, "SF11")])
 
 
 def test_fine_meshes_are_searched_too(mesh):

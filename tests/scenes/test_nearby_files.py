@@ -53,6 +53,17 @@ def test_no_link_leads_out(folder) -> None:
         load(folder, "link.obj")
 
 
+@pytest.mark.parametrize("outside", [False, True])
+def test_a_link_to_itself_is_no_file(folder, outside) -> None:
+    os.symlink("loop.obj", folder / "loop.obj")
+    (folder / "bench.toml").write_text(MESH.format("loop.obj"))
+    with pytest.raises(scenes.SceneError) as caught:
+        scenes.load(folder / "bench.toml", allow_outside=outside)
+    (problem,) = caught.value.problems
+    assert problem.path == "objects[0].shape.file"
+    assert "'loop.obj'" in problem.message
+
+
 @pytest.mark.parametrize("file", ["three.obj", "parts", "", "a\\u0000b", "x" * 5000])
 def test_what_is_no_file_is_said(folder, file) -> None:
     with pytest.raises(scenes.SceneError) as caught:

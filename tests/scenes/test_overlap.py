@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import scenes
-from scenes import Box, Lens, LensSurface, SceneError, Sphere
+from scenes import Box, Lens, LensSurface, SceneError, Sphere, overlap
 from scenes.overlap import overlap_depth
 
 UNIT = Box(position=(0, 0, 0), size=(1, 1, 1))
@@ -124,3 +124,67 @@ def test_a_priority_is_a_whole_number_within_limits(priority):
             medium = "N-BK7"
             priority = {str(priority).lower() if isinstance(priority, bool) else repr(priority)}
         """)
+
+
+def slats(material, count=450):
+    """A louvre: each slat's bounding sphere, 1 m across, meets those of all the others."""
+    return [
+        scenes.SceneObject(
+            name=f"slat {k}", material=material,
+            shape=Box(position=(0.0, 0.002 * k, 0.0), size=(1.0, 0.001, 0.01)),
+        )
+        for k in range(count)
+    ]  # fmt: skip
+
+
+def test_opaque_solids_may_be_a_crowd():
+    # 450 · 449 / 2 = 101,025 pairs, of which none can be a contradiction.
+    scene = scenes.Scene(objects=slats(scenes.Absorber()))
+    assert len(scene.objects) == 450
+    with pytest.raises(SceneError, match="101025 pairs are close to each other"):
+        scenes.Scene(objects=slats(glass("N-BK7")))
+
+
+def test_more_searches_than_there_is_time_for_are_refused(monkeypatch):
+    # Balls of 0.2 at a bar's long edge, √2 · 0.145 = 0.205 from it: no direction of a face, nor
+    # from middle to middle, parts them, so that each is searched for.
+    bar = Box(position=(0.0, 0.0, 0.0), size=(4.0, 1.0, 1.0))
+    balls = [Sphere(position=(x, 0.645, 0.645), radius=0.2) for x in (-1.7, -1.1, 1.1, 1.7)]
+    things = [(bar, "N-BK7"), *((ball, "SF11") for ball in balls)]
+    row = [scenes.SceneObject(shape=shape, material=glass(name)) for shape, name in things]
+    searched = []
+    search = overlap.overlap_depth
+
+    def counted(one, other, touch):
+        searched.append((one, other))
+        return search(one, other, touch)
+
+    monkeypatch.setattr(overlap, "overlap_depth", counted)
+    scenes.Scene(objects=row)
+    assert len(searched) == 4
+    monkeypatch.setattr(overlap, "_MOST_SEARCHES", 3)
+    with pytest.raises(SceneError) as caught:
+        scenes.Scene(objects=row)
+    (problem,) = caught.value.problems
+    assert problem.path == "objects"
+    assert "at most 3 such pairs" in problem.allowed
+    assert "different priorities" in problem.allowed
+
+
+@pytest.mark.parametrize("x", [0.0, 1e6, 5e6, -3e8])
+def test_cubes_face_to_face_touch_wherever_they_are(x):
+    # A coordinate is known to ε/2 of itself: at 5·10⁶ m, 5·10⁻¹⁰ m, 0.1 m cubes overlap by that.
+    row = [
+        scenes.SceneObject(
+            name=f"cube {k}", shape=Box(position=(x + 0.1 * k, 0, 0), size=(0.1, 0.1, 0.1)),
+            material=glass(("N-BK7", "SF11")[k % 2]),
+        )
+        for k in range(4)
+    ]  # fmt: skip
+    scenes.Scene(objects=row)
+    # An overlap of a millimetre is one there, too.
+    deep = row[1].model_copy(
+        update={"shape": Box(position=(x + 0.099, 0, 0), size=(0.1, 0.1, 0.1))}
+    )
+    with pytest.raises(SceneError, match="claim the same space"):
+        scenes.Scene(objects=[row[0], deep])

@@ -92,6 +92,26 @@ def test_every_format_is_read_and_its_corners_joined(write, name) -> None:
     assert surface.corner_normals is None
 
 
+@pytest.mark.parametrize("header", [b"solid", b"  SOLID of \xb5m, exported"])
+def test_the_header_of_a_binary_stl_may_begin_as_text_does(write, header) -> None:
+    # As many exporters write it; its length, 84 + 50 n, says that it is none, and no byte may
+    # change: 0xb5 is in the header, and bytes beyond 0x7f are in the coordinates.
+    content = header.ljust(80) + stl()[80:]
+    assert any(byte > 0x7F for byte in content[84:])
+    surface = mesh(write("box.stl", content)).local_surface()
+    assert (len(surface.vertices), len(surface.triangles)) == (8, 12)
+    assert surface.volume == pytest.approx(VOLUME, rel=1e-15)
+
+
+def test_an_stl_of_text_is_read(write) -> None:
+    rows = ["solid box"]
+    for face in FACES:
+        corners = "".join(f"vertex {x} {y} {z}\n" for x, y, z in POINTS[face])
+        rows.append(f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet")
+    text = "\n".join([*rows, "endsolid box\n"]).encode()
+    assert mesh(write("box.stl", text)).local_surface().volume == pytest.approx(VOLUME, rel=1e-15)
+
+
 def test_a_node_of_a_glb_is_where_its_transform_puts_it(write) -> None:
     surface = mesh(write("box.glb", glb(scale=0.5))).local_surface()
     assert surface.volume == pytest.approx(VOLUME / 8.0, rel=1e-15)
