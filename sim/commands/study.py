@@ -4,7 +4,8 @@ Varies one thing at a time around the scene's own settings (photons, passes, gat
 precision, sampling, aiming, Fresnel's formulas, dispersion …), runs each several times, and
 compares with a reference. The folder gets study.csv and study.html, a page that needs nothing
 else. Errors are relative L2: of spectral irradiance in bins on a flat receiver, and of the
-picture's luminance. Time is CPU time.
+picture's luminance; choices for the picture are compared by its error as --target-error counts it,
+which a few burnt-out pixels do not rule. Time is CPU time.
 """
 
 from __future__ import annotations

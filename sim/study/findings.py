@@ -63,7 +63,7 @@ class Effect:
     Attributes:
         row: of the value.
         ratio: error² × CPU-seconds relative to the centre's: how many times the photons it takes
-            for the same error, at equal time.
+            for the same error, at equal time; the error as `Row.judged` has it.
         time: CPU-seconds relative to the centre's.
         error: error relative to the centre's.
     """
@@ -86,7 +86,7 @@ def effects(outcome: Outcome, result: ResultKind) -> list[Effect]:
             row,
             _ratio(row, centre),
             row.cpu_s.value / centre.cpu_s.value,
-            row.errors.error.value / centre.errors.error.value,
+            row.judged.value / centre.judged.value,
         )
         for row in outcome.of(result)
         if row is not centre
@@ -95,13 +95,13 @@ def effects(outcome: Outcome, result: ResultKind) -> list[Effect]:
 
 def _ratio(row: Row, centre: Row) -> Interval:
     """Ratio of the mean error² times the mean time, its interval on the logarithm."""
-    value = (row.errors.error.value**2 * row.cpu_s.value) / (
-        centre.errors.error.value**2 * centre.cpu_s.value
+    value = (row.judged.value**2 * row.cpu_s.value) / (
+        centre.judged.value**2 * centre.cpu_s.value
     )
     relative = [
         (interval.high - interval.low) / (2.0 * interval.value) * weight
         for one in (row, centre)
-        for interval, weight in ((one.errors.error, 2.0), (one.cpu_s, 1.0))
+        for interval, weight in ((one.judged, 2.0), (one.cpu_s, 1.0))
         if interval.value > 0.0 and np.isfinite(interval.high)
     ]
     factor = math.exp(math.hypot(*relative))

@@ -78,6 +78,14 @@ class Row:
         return len(self.cpu_of_replicate)
 
     @property
+    def judged(self) -> Interval:
+        """The error by which values are compared: of pictures the tempered one.
+
+        Relative L2 is ruled by the few pixels where a lamp's edge or a focus burns out.
+        """
+        return self.tempered if np.isfinite(self.tempered.value) else self.errors.error
+
+    @property
     def name(self) -> str:
         """Axis and value in one."""
         return self.axis if self.axis == self.value else f"{self.axis}: {self.value}"

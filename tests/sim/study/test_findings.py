@@ -22,7 +22,13 @@ from sim.study.references import (
 from sim.study.report import encode_html
 from sim.study.sample import Costs, Sample
 from sim.study.setup import SeedSource
-from sim.study.statistics import certain_errors, gram_matrix, mean_interval, separate_errors
+from sim.study.statistics import (
+    Interval,
+    certain_errors,
+    gram_matrix,
+    mean_interval,
+    separate_errors,
+)
 
 CELLS = 2000
 REPLICATES = 6
@@ -65,6 +71,24 @@ def outcome():
         default_passes=8, coverage=1.0, bins_text="", rows=(*rows, mesh),
         references={"bins": Reference(np.ones(1), "photons", 1e-3, 0.0, "")},
     )
+
+
+def test_pictures_are_judged_by_an_error_that_no_few_pixels_rule(outcome):
+    # Ten times the relative L2 error, from a lamp's edge, but half the tempered one: error² × time
+    # is a quarter.
+    centre, lamp = (
+        dataclasses.replace(
+            make_row(axis, value, noise=noise, seed=7), result="picture", tempered=tempered
+        )
+        for axis, value, noise, tempered in (
+            ("centre", "centre", 0.1, Interval(0.02, 0.019, 0.021)),
+            ("seen", "lamp", 1.0, Interval(0.01, 0.0095, 0.0105)),
+        )
+    )
+    (effect,) = effects(dataclasses.replace(outcome, rows=(centre, lamp)), "picture")
+    assert effect.error == pytest.approx(0.5)
+    assert effect.ratio.value == pytest.approx(0.25 * effect.time)
+    assert effect.ratio.high < 1.0
 
 
 def test_slopes_are_those_of_the_ladder(outcome):
