@@ -45,10 +45,10 @@ PRESETS: Final[dict[str, dict[str, float]]] = {
 """Photons and passes of each preset, in terms of the scene's own or the program's defaults.
 
 Placed by `tests/benchmarks/presets.py`, which gives the time of each to a quarter and to four times
-its photons: in `ball` and `prism` none of these is better by more than 1.15 in error. Passes are
-what counts, since pixels at lamps' edges and foci, which passes alone sample anew, have most of the
-error: the draft leaves 1.5 to 1.6 times the error of the standard in a quarter of its time, the
-reference, in 16 times its time, 0.47 to 0.48 of it.
+its photons: in `ball` and `prism` neither is better by more than 1.15 in error, but by 1.4 in one
+of two rounds for the standard of `ball`. Pixels at lamps' edges and foci, which passes alone sample
+anew, have most of the error, so presets differ in passes: the draft leaves 1.3 to 1.5 times the
+error of the standard in a quarter of its time, the reference 0.3 to 0.5 of it in 16 times.
 """
 
 DEFAULTS: Final = {
