@@ -10,7 +10,7 @@ from pathlib import Path
 from pydantic import ValidationInfo
 from pydantic_core import PydanticCustomError
 
-from scenes.errors import Problem, refusal, shown
+from scenes.errors import Problem, reason_of, refusal, shown
 from scenes.fields import folder_of, may_look_outside
 
 __all__ = ["nearby_file"]
@@ -41,7 +41,8 @@ def nearby_file(name: str, info: ValidationInfo, *, field: str = "file") -> Path
         raise
     # No path can look like this; a link to itself is a RuntimeError before Python 3.13.
     except (OSError, ValueError, RuntimeError) as error:
-        raise refusal(Problem(field, f"{shown(name)} cannot be a path: {error}", name)) from None
+        message = f"{shown(name)} cannot be a path: {reason_of(error)}"
+        raise refusal(Problem(field, message, name)) from None
     where = f"in {folder}" if folder is not None else "there"
     message = f"there is no file {shown(name)} {where}"
     raise refusal(Problem(field, message, name, "the path of a file"))

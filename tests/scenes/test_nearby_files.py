@@ -81,3 +81,14 @@ def test_a_text_without_a_file_looks_in_the_folder_it_is_given(folder) -> None:
 def test_a_model_built_in_python_may_name_any_file(folder) -> None:
     shape = scenes.Mesh(position=(0, 0, 0), file=str(folder.parent / "outside.obj"))
     assert len(shape.local_surface().triangles) == 1
+
+
+def test_a_name_without_end_is_not_told_in_full(tmp_path) -> None:
+    text = """
+    [[objects]]
+    shape = {{ type = "mesh", position = [0, 0, 0], file = "{}.ply" }}
+    material = {{ type = "absorber" }}
+    """
+    with pytest.raises(scenes.SceneError, match="cannot be a path") as caught:
+        scenes.loads(text.format("x" * 5000), folder=tmp_path)
+    assert max(len(one.message) for one in caught.value.problems) < 500
